@@ -13,9 +13,9 @@ BiopsyTable::BiopsyTable(const TransferFunction& transferFunction) : entries_(40
         const TransferFunctionPoint point =
             pointAt(transferFunction.points, double(lowestHu) + double(n));
         const double opacity = 1.0 - std::pow(1.0 - point.opacity, biopsyStepMm);
-        entries_[n].opacity = float(opacity);
         for (int c = 0; c < 3; ++c)
-            entries_[n].color[c] = float(opacity * linearLight(point.color[c]));
+            entries_[n][c] = float(opacity * linearLight(point.color[c]));
+        entries_[n][3] = float(opacity);
     }
 }
 
@@ -23,46 +23,50 @@ namespace {
 
 // `inside`: every step lies within the smoothed scan, so that nothing is to be clamped.
 template <bool inside>
-BiopsyRay march(const BiopsyScan& scan, const BiopsyTable& table, glm::vec3 voxel, glm::vec3 step,
-                RayEnd end) {
+BiopsyRay march(const BiopsyScan& scan, const BiopsyTable& table, glm::vec3 startVoxel,
+                glm::vec3 stepVoxels, RayEnd end) {
     // Within a step of the wall the scan is still half gas.
-    constexpr int wallSteps = 3;
+    constexpr int wallSteps = 3, peakSteps = int(peakMm / biopsyStepMm);
     const glm::ivec3 size = scan.lumen.grid().size;
     const auto row = std::size_t(size.x), slice = row * std::size_t(size.y);
-    const std::uint8_t* labels = scan.lumen.voxels().data();
-    const glm::vec3 origin(scan.scan.origin()), most(size - 1);
+    const std::uint8_t* const labels = scan.lumen.voxels().data();
     const auto airBelow = float(scan.airBelowHu);
-    const auto isLumen = [&] {
-        glm::vec3 at = voxel + origin;
-        if constexpr (!inside) at = glm::clamp(at, glm::vec3(0.0f), most);
-        const glm::ivec3 nearest(at + 0.5f);
-        return labels[std::size_t(nearest.z) * slice + std::size_t(nearest.y) * row +
-                      std::size_t(nearest.x)] != std::uint8_t(LumenLabel::outside);
+    // To the scan's voxels, rounded to the nearest.
+    const glm::vec3 first = glm::vec3(scan.scan.origin()) + 0.5f;
+    const FourFloats toNearest{first.x, first.y, first.z, 0.0f};
+    const auto isLumen = [&](const FourFloats& voxel) {
+        const FourInts nearest = __builtin_convertvector(voxel + toNearest, FourInts);
+        glm::ivec3 at(nearest[0], nearest[1], nearest[2]);
+        if constexpr (!inside) at = glm::clamp(at, glm::ivec3(0), size - 1);
+        return labels[std::size_t(at.z) * slice + std::size_t(at.y) * row + std::size_t(at.x)] !=
+               std::uint8_t(LumenLabel::outside);
     };
+    FourFloats voxel{startVoxel.x, startVoxel.y, startVoxel.z, 0.0f};
+    const FourFloats step{stepVoxels.x, stepVoxels.y, stepVoxels.z, 0.0f};
+    FourFloats seen{};  // colour and opacity
     BiopsyRay ray;
     bool inTissue = false, opaque = false;
     for (int n = 0; n < biopsySteps; ++n, voxel += step) {
-        const float hu = inside ? scan.scan.linearWithin(voxel) : scan.scan.linear(voxel);
-        const bool empty = hu < airBelow || isLumen();
+        const float hu = inside ? scan.scan.linearWithin(voxel)
+                                : scan.scan.linear({voxel[0], voxel[1], voxel[2]});
+        const bool empty = hu < airBelow || isLumen(voxel);
         if ((inTissue || n >= wallSteps) && empty) {
             ray.reenters = inTissue;
             break;
         }
         inTissue |= !empty;
-        if (n * biopsyStepMm <= peakMm) ray.peakHu = std::max(ray.peakHu, hu);
+        if (n <= peakSteps) ray.peakHu = std::max(ray.peakHu, hu);
         ray.tissueMm += float(biopsyStepMm);
         if (opaque) continue;
-        const BiopsyTable::Entry& entry = table.at(hu);
-        const float through = 1.0f - ray.opacity;
-        ray.color += through * entry.color;
-        ray.opacity += through * entry.opacity;
-        if (ray.opacity >= float(terminationOpacity)) {
-            ray.color /= ray.opacity;
-            ray.opacity = 1.0f;
+        seen += (1.0f - seen[3]) * table.at(hu);
+        if (seen[3] >= float(terminationOpacity)) {
+            seen /= seen[3];
             opaque = true;
             if (end == RayEnd::opaque) break;
         }
     }
+    ray.color = {seen[0], seen[1], seen[2]};
+    ray.opacity = seen[3];
     return ray;
 }
 

@@ -1,11 +1,11 @@
 // Electronic biopsy: what lies beneath the wall, as a translucent colour (dissertation §6.2.4).
 #pragma once
 
+#include "cad/fours.h"
 #include "cad/smooth_scan.h"
 #include "core/optics.h"
 #include "core/volume.h"
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -24,11 +24,8 @@ class BiopsyTable {
 public:
     explicit BiopsyTable(const TransferFunction& transferFunction);
 
-    struct Entry {
-        glm::vec3 color{0.0f};  ///< linear light, times opacity
-        float opacity = 0.0f;
-    };
-    const Entry& at(float hu) const {
+    /// Of one step: red, green and blue, linear light, times the opacity, and the opacity.
+    const FourFloats& at(float hu) const {
         const int n = int(hu) - lowestHu;
         return entries_[std::size_t(n < 0                       ? 0
                                     : n >= int(entries_.size()) ? int(entries_.size()) - 1
@@ -37,7 +34,7 @@ public:
 
 private:
     static constexpr int lowestHu = -1024;
-    std::vector<Entry> entries_;
+    std::vector<FourFloats> entries_;
 };
 
 /// What one ray saw.

@@ -1,5 +1,6 @@
 #include "cad/candidates.h"
 
+#include "cad/fours.h"
 #include "cad/lesion.h"
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
@@ -218,29 +219,53 @@ double boxMm(const WallSamples& wall, std::span<const std::uint32_t> samples) {
 }  // namespace
 
 Diameter diameterOf(const WallSamples& wall, std::span<const std::uint32_t> samples) {
+    if (samples.empty()) return {};
     // The farthest two are extreme along the line between them: those along many lines are asked.
+    // In single precision about the first sample, four lines at once.
     constexpr int lines = 64;
-    std::array<std::uint32_t, 2 * lines> extremes{};
-    for (int n = 0; n < lines; ++n) {
-        // Evenly over the half sphere.
-        const double z = (n + 0.5) / lines, turn = 2.399963229728653 * n,
-                     r = std::sqrt(1.0 - z * z);
-        const glm::dvec3 line(r * std::cos(turn), r * std::sin(turn), z);
-        double least = 1e30, most = -1e30;
-        for (const std::uint32_t v : samples) {
-            const double along = glm::dot(line, wall.mesh.vertices[v]);
-            if (along < least) least = along, extremes[std::size_t(2 * n)] = v;
-            if (along > most) most = along, extremes[std::size_t(2 * n + 1)] = v;
+    std::vector<glm::dvec3> places;
+    std::vector<glm::vec3> near;
+    places.reserve(samples.size()), near.reserve(samples.size());
+    for (const std::uint32_t v : samples) {
+        places.push_back(wall.mesh.vertices[v]);
+        near.push_back(glm::vec3(places.back() - places.front()));
+    }
+    std::array<std::size_t, 2 * lines> extremes{};
+    for (int first = 0; first < lines; first += 4) {
+        FourFloats x{}, y{}, z{};
+        for (int n = 0; n < 4; ++n) {
+            // Evenly over the half sphere.
+            const double up = (first + n + 0.5) / lines, turn = 2.399963229728653 * (first + n),
+                         r = std::sqrt(1.0 - up * up);
+            x[n] = float(r * std::cos(turn)), y[n] = float(r * std::sin(turn)), z[n] = float(up);
+        }
+        FourFloats least{}, most{};
+        FourInts lowest{}, highest{};
+        for (int p = 1; p < int(near.size()); ++p) {
+            const glm::vec3 place = near[std::size_t(p)];
+            const FourFloats along = place.x * x + place.y * y + place.z * z;
+            const FourInts own = p - FourInts{};
+            const FourInts lower = (along < least);
+            const FourInts higher = (along > most);
+            least = lower ? along : least, lowest = lower ? own : lowest;
+            most = higher ? along : most, highest = higher ? own : highest;
+        }
+        for (int n = 0; n < 4; ++n) {
+            extremes[std::size_t(2 * (first + n))] = std::size_t(lowest[n]);
+            extremes[std::size_t(2 * (first + n) + 1)] = std::size_t(highest[n]);
         }
     }
-    Diameter best;
-    for (const std::uint32_t a : extremes) {
-        for (const std::uint32_t b : extremes) {
-            const double mm = glm::distance(wall.mesh.vertices[a], wall.mesh.vertices[b]);
-            if (mm > best.mm) best = {mm, a, b};
+    double mostMm2 = 0.0;
+    std::size_t from = 0, to = 0;
+    for (auto a = extremes.begin(); a != extremes.end(); ++a) {
+        for (auto b = a + 1; b != extremes.end(); ++b) {
+            const glm::dvec3 off = places[*a] - places[*b];
+            const double mm2 = glm::dot(off, off);
+            if (mm2 > mostMm2) mostMm2 = mm2, from = *a, to = *b;
         }
     }
-    return best;
+    if (mostMm2 == 0.0) return {};
+    return {std::sqrt(mostMm2), samples[from], samples[to]};
 }
 
 std::vector<Patch> patchesByShape(const WallEvidence& evidence, Generator scale, int threads) {

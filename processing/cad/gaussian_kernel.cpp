@@ -5,7 +5,7 @@
 namespace haustra::cad {
 
 std::vector<float> gaussianKernel(double sigmaVoxels) {
-    const int reach = int(std::ceil(3.0 * sigmaVoxels));
+    const int reach = int(std::ceil(kernelDeviations * sigmaVoxels));
     std::vector<float> kernel;
     double sum = 0.0;
     for (int n = -reach; n <= reach; ++n)

@@ -5,8 +5,11 @@
 
 namespace haustra::cad {
 
-/// A Gaussian's weights at whole numbers, three deviations to either side, of sum 1; of a
-/// deviation of 0 the one weight 1.
+/// How far to either side weights reach.
+inline constexpr double kernelDeviations = 3.0;
+
+/// A Gaussian's weights at whole numbers, kernelDeviations to either side and up to the next whole
+/// number, of sum 1; of a deviation of 0 the one weight 1.
 std::vector<float> gaussianKernel(double sigmaVoxels);
 
 /// out = Σ kernel[reach + n] · line(n), of lines of `count` numbers, for a symmetric kernel of an

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 namespace haustra::cad {
@@ -69,25 +70,25 @@ void smoothAcross(const std::vector<float>& kernel, Volume<float>& volume, int t
 // Weights of the four coefficients around a place between the second and the third, and their first
 // and second derivatives, of a uniform cubic B-spline.
 struct SplineWeights {
-    std::array<double, 4> value, first, second;
-    explicit SplineWeights(double f) {
-        const double g = 1.0 - f;
-        value = {g * g * g / 6.0, (4.0 - 6.0 * f * f + 3.0 * f * f * f) / 6.0,
-                 (4.0 - 6.0 * g * g + 3.0 * g * g * g) / 6.0, f * f * f / 6.0};
-        first = {-0.5 * g * g, f * (1.5 * f - 2.0), -g * (1.5 * g - 2.0), 0.5 * f * f};
-        second = {g, 3.0 * f - 2.0, 3.0 * g - 2.0, f};
+    std::array<float, 4> value, first, second;
+    explicit SplineWeights(float f) {
+        const float g = 1.0f - f;
+        value = {g * g * g / 6.0f, (4.0f - 6.0f * f * f + 3.0f * f * f * f) / 6.0f,
+                 (4.0f - 6.0f * g * g + 3.0f * g * g * g) / 6.0f, f * f * f / 6.0f};
+        first = {-0.5f * g * g, f * (1.5f * f - 2.0f), -g * (1.5f * g - 2.0f), 0.5f * f * f};
+        second = {g, 3.0f * f - 2.0f, 3.0f * g - 2.0f, f};
     }
 };
 
 struct Place {
     glm::ivec3 first;
-    glm::dvec3 between;
+    glm::vec3 between;
 };
 Place placeIn(const Grid& grid, glm::dvec3 voxel) {
     const glm::dvec3 p =
         glm::clamp(voxel, glm::dvec3(1.0), glm::dvec3(grid.size - 2) - glm::dvec3(1e-9));
-    const glm::dvec3 low = glm::floor(p);
-    return {glm::ivec3(low) - 1, p - low};
+    const glm::ivec3 low(p);  // p > 0
+    return {low - 1, glm::vec3(p - glm::dvec3(low))};
 }
 
 }  // namespace
@@ -146,38 +147,43 @@ double SmoothScan::at(glm::dvec3 patientMm) const {
         double plane = 0.0;
         for (int j = 0; j < 4; ++j) {
             const float* c = &smooth_.voxels()[grid.index(place.first + glm::ivec3(0, j, k))];
-            plane += y.value[std::size_t(j)] * (x.value[0] * c[0] + x.value[1] * c[1] +
-                                                x.value[2] * c[2] + x.value[3] * c[3]);
+            plane += double(y.value[std::size_t(j)] * (x.value[0] * c[0] + x.value[1] * c[1] +
+                                                       x.value[2] * c[2] + x.value[3] * c[3]));
         }
-        sum += z.value[std::size_t(k)] * plane;
+        sum += double(z.value[std::size_t(k)]) * plane;
     }
     return sum;
 }
 
 Derivatives SmoothScan::derivatives(glm::dvec3 patientMm) const {
-    const Grid& grid = smooth_.grid();
-    const Place place = placeIn(grid, glm::dvec3(voxelFromPatient_ * glm::dvec4(patientMm, 1.0)));
+    const Place place =
+        placeIn(smooth_.grid(), glm::dvec3(voxelFromPatient_ * glm::dvec4(patientMm, 1.0)));
     const SplineWeights x(place.between.x), y(place.between.y), z(place.between.z);
-    double f = 0, fx = 0, fy = 0, fz = 0, fxx = 0, fxy = 0, fxz = 0, fyy = 0, fyz = 0, fzz = 0;
+    const float* const first = smooth_.voxels().data() + smooth_.grid().index(place.first);
+    // Sums over j and k, of all four i at once.
+    FourFloats c{}, cy{}, cz{}, cyy{}, cyz{}, czz{};
     for (std::size_t k = 0; k < 4; ++k) {
-        double p = 0, px = 0, py = 0, pxx = 0, pxy = 0, pyy = 0;
+        FourFloats p{}, py{}, pyy{};
         for (std::size_t j = 0; j < 4; ++j) {
-            const float* c =
-                &smooth_.voxels()[grid.index(place.first + glm::ivec3(0, int(j), int(k)))];
-            double r = 0, rx = 0, rxx = 0;
-            for (std::size_t i = 0; i < 4; ++i)
-                r += x.value[i] * c[i], rx += x.first[i] * c[i], rxx += x.second[i] * c[i];
-            p += y.value[j] * r, px += y.value[j] * rx, pxx += y.value[j] * rxx;
-            py += y.first[j] * r, pxy += y.first[j] * rx, pyy += y.second[j] * r;
+            FourFloats row;
+            std::memcpy(&row, first + k * slice_ + j * row_, sizeof row);
+            p += y.value[j] * row, py += y.first[j] * row, pyy += y.second[j] * row;
         }
-        f += z.value[k] * p, fx += z.value[k] * px, fy += z.value[k] * py;
-        fxx += z.value[k] * pxx, fxy += z.value[k] * pxy, fyy += z.value[k] * pyy;
-        fz += z.first[k] * p, fxz += z.first[k] * px, fyz += z.first[k] * py;
-        fzz += z.second[k] * p;
+        c += z.value[k] * p, cy += z.value[k] * py, cyy += z.value[k] * pyy;
+        cz += z.first[k] * p, cyz += z.first[k] * py;
+        czz += z.second[k] * p;
     }
-    const glm::dmat3 hessian(fxx, fxy, fxz, fxy, fyy, fyz, fxz, fyz, fzz),
-        back = glm::transpose(turn_);
-    return {f, back * glm::dvec3(fx, fy, fz), back * hessian * turn_};
+    const auto along = [](const std::array<float, 4>& weights, const FourFloats& sums) {
+        return double(weights[0] * sums[0] + weights[1] * sums[1] + weights[2] * sums[2] +
+                      weights[3] * sums[3]);
+    };
+    const double fxy = along(x.first, cy), fxz = along(x.first, cz), fyz = along(x.value, cyz);
+    const glm::dmat3 hessian(along(x.second, c), fxy, fxz,   //
+                             fxy, along(x.value, cyy), fyz,  //
+                             fxz, fyz, along(x.value, czz));
+    const glm::dvec3 gradient(along(x.first, c), along(x.value, cy), along(x.value, cz));
+    const glm::dmat3 back = glm::transpose(turn_);
+    return {along(x.value, c), back * gradient, back * hessian * turn_};
 }
 
 }  // namespace haustra::cad

@@ -1,7 +1,10 @@
 // A scan at a chosen scale, with its derivatives at any place.
 #pragma once
 
+#include "cad/fours.h"
 #include "core/volume.h"
+
+#include <cstring>
 
 #include <glm/glm.hpp>
 
@@ -40,21 +43,25 @@ public:
     /// ones. For long rays; without the spline's own share of the smoothing.
     float linear(glm::vec3 voxel) const {
         const glm::vec3 most(smooth_.grid().size - 1);
-        return linearWithin(glm::clamp(voxel, glm::vec3(0.0f), most - glm::vec3(1e-3f)));
+        const glm::vec3 inside = glm::clamp(voxel, glm::vec3(0.0f), most - glm::vec3(1e-3f));
+        return linearWithin(FourFloats{inside.x, inside.y, inside.z, 0.0f});
     }
     /// The same of a place that is known to lie within it.
-    float linearWithin(glm::vec3 voxel) const {
-        const glm::ivec3 low(voxel);
-        const glm::vec3 f = voxel - glm::vec3(low);
-        const float* c = smooth_.voxels().data() + std::size_t(low.z) * slice_ +
-                         std::size_t(low.y) * row_ + std::size_t(low.x);
-        const auto along = [&](const float* at) { return at[0] + f.x * (at[1] - at[0]); };
-        const auto plane = [&](const float* at) {
-            const float near = along(at);
-            return near + f.y * (along(at + row_) - near);
+    float linearWithin(FourFloats voxel) const {
+        const FourInts low = __builtin_convertvector(voxel, FourInts);
+        const FourFloats f = voxel - __builtin_convertvector(low, FourFloats);
+        const float* c = smooth_.voxels().data() + std::size_t(low[2]) * slice_ +
+                         std::size_t(low[1]) * row_ + std::size_t(low[0]);
+        // The four pairs along i in two lots, then one after the other axis.
+        const auto pairs = [&](const float* at) {
+            Pair near, far;
+            std::memcpy(&near, at, sizeof near), std::memcpy(&far, at + row_, sizeof far);
+            return __builtin_shufflevector(near, far, 0, 1, 2, 3);
         };
-        const float near = plane(c);
-        return near + f.z * (plane(c + slice_) - near);
+        const FourFloats front = pairs(c), plane = front + f[2] * (pairs(c + slice_) - front);
+        const FourFloats line =
+            plane + f[1] * (__builtin_shufflevector(plane, plane, 2, 3, 2, 3) - plane);
+        return line[0] + f[0] * (line[1] - line[0]);
     }
     /// Whether linear() clamps nothing there.
     bool within(glm::vec3 voxel) const {
@@ -67,6 +74,8 @@ public:
     glm::ivec3 origin() const { return origin_; }
 
 private:
+    using Pair = float __attribute__((vector_size(8)));
+
     Volume<float> smooth_;
     glm::ivec3 origin_{0};
     glm::dmat4 voxelFromPatient_{1.0};

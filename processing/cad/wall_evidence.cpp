@@ -1,6 +1,7 @@
 #include "cad/wall_evidence.h"
 
 #include "cad/biopsy_transfer.h"
+#include "cad/gaussian_kernel.h"
 #include "core/bridges.h"
 #include "core/ct_scan.h"
 
@@ -32,8 +33,10 @@ std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon, const Wall
         for (const RebuiltWallRecord& wall : colon.rebuilt) {
             const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
             for (std::size_t v = begin; v < end; ++v) {
-                const double mm = glm::distance(samples.mesh.vertices[v], wall.placeMm);
-                if (mm < leastRebuiltMm || (mm < reachMm && rays[v].tissueMm < thinMm))
+                const glm::dvec3 off = samples.mesh.vertices[v] - wall.placeMm;
+                const double mm2 = glm::dot(off, off);
+                if (mm2 >= reachMm * reachMm) continue;
+                if (mm2 < leastRebuiltMm * leastRebuiltMm || rays[v].tissueMm < thinMm)
                     invented[v] = 1;
             }
         }
@@ -81,12 +84,11 @@ std::vector<std::uint8_t> samplesBehind(const std::vector<LumenLabel>& labels, L
 
 }  // namespace
 
-SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads) {
+SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads, double reachMm) {
     glm::dvec3 low(1e30), high(-1e30);
     for (const glm::dvec3& p : colon.surface.vertices)
         low = glm::min(low, p), high = glm::max(high, p);
-    const glm::dvec3 marginMm(biopsyStepMm * biopsySteps + 2.0);
-    return {colon.cleansed, low - marginMm, high + marginMm, sigmaMm, threads};
+    return {colon.cleansed, low - reachMm, high + reachMm, sigmaMm, threads};
 }
 
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth) {
@@ -128,15 +130,23 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     };
     const int threads = threadCount(options.threads);
     WallEvidence evidence;
+    // Of the broad scale shapes are asked for at the wall alone, whose coefficients are smoothed
+    // from so far; the spline's own two voxels are SmoothScan's margin.
+    const glm::dvec3 spacing = colon.cleansed.grid().spacingMm();
+    const double broadReachMm =
+        kernelDeviations * broadSigmaMm + std::max({spacing.x, spacing.y, spacing.z});
     // Sampling takes mostly one thread, so the rest is made beside it.
     std::unique_ptr<const SmoothScan> broad;
-    const auto smoothed = [&](double sigmaMm) {
+    const auto smoothed = [&](double sigmaMm, double reachMm) {
         return std::make_unique<const SmoothScan>(
-            smoothedAround(colon, sigmaMm, std::max(1, threads - 1)));
+            smoothedAround(colon, sigmaMm, std::max(1, threads - 1), reachMm));
     };
     const std::array<std::function<void()>, 3> parts{
         [&] { evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads); },
-        [&] { evidence.smooth = smoothed(shapeSigmaMm), broad = smoothed(broadSigmaMm); },
+        [&] {
+            evidence.smooth = smoothed(shapeSigmaMm, biopsyReachMm);
+            broad = smoothed(broadSigmaMm, broadReachMm);
+        },
         [&] {
             evidence.alongColon = std::make_unique<const AlongColon>(colon.flat, colon.centerline);
         }};

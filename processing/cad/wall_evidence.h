@@ -80,8 +80,12 @@ struct WallEvidence {
     TransferFunction transferFunction;  ///< that the rays were cast by
 };
 
-/// The cleansed scan at a scale, as far around the wall as biopsy rays reach.
-SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads);
+/// How far from the wall biopsy rays look.
+inline constexpr double biopsyReachMm = biopsyStepMm * biopsySteps + 2.0;
+
+/// The cleansed scan at a scale, in the box that reaches so far beyond the wall to each side.
+SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads,
+                          double reachMm = biopsyReachMm);
 
 /// `smooth`: at shapeSigmaMm. From beneath the surface's vertices.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);

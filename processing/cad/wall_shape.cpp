@@ -21,14 +21,15 @@ WallShape shapeOf(const Derivatives& scan) {
     const double steep = glm::length(scan.gradient);
     shape.gradient = float(steep), shape.hu = float(scan.hu);
     if (steep < 1e-6) return shape;
-    const glm::dvec3 n = scan.gradient / steep;
+    const double perGradient = 1.0 / steep;
+    const glm::dvec3 n = perGradient * scan.gradient;
     shape.intoWall = glm::vec3(n);
     // Two directions along the wall; the shape operator there is the Hessian over the gradient.
     const glm::dvec3 aside = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(n, aside)), v = glm::cross(n, u);
     const glm::dvec3 hu = scan.hessian * u, hv = scan.hessian * v;
-    const double a = -glm::dot(u, hu) / steep, b = -glm::dot(u, hv) / steep,
-                 c = -glm::dot(v, hv) / steep;
+    const double a = -perGradient * glm::dot(u, hu), b = -perGradient * glm::dot(u, hv),
+                 c = -perGradient * glm::dot(v, hv);
     const double mean = 0.5 * (a + c), spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
     shape.k1 = float(mean + spread), shape.k2 = float(mean - spread);
     return shape;

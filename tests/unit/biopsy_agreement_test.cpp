@@ -30,10 +30,10 @@ TEST(BiopsyAgreement, AStepOfADetectionRayIsAStepOfARaycaster) {
             const double entry =
                 std::clamp(raycaster.entryOf(hu), 0.0, double(render::TransferTable::entries - 1));
             const glm::vec4& shown = raycaster.rgba[std::size_t(std::lround(entry))];
-            const auto& seen = detection.at(float(hu));
-            ASSERT_NEAR(seen.opacity, shown.a, 2e-3) << hu;
+            const cad::FourFloats seen = detection.at(float(hu));
+            ASSERT_NEAR(seen[3], shown.a, 2e-3) << hu;
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(seen.color[c], shown.a * shown[c], 2e-3) << hu;
+                ASSERT_NEAR(seen[c], shown.a * shown[c], 2e-3) << hu;
         }
     }
 }
