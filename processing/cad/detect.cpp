@@ -141,7 +141,6 @@ bool isResidue(const Lesion& lesion, const FeatureVector& features, double resid
 struct Measures {
     const PreparedColon& colon;
     const WallEvidence& evidence;
-    const SampleTriangles& triangles;
     const ResidueFilms& films;
     std::span<const float> textureDistances;
     int threads;
@@ -158,9 +157,10 @@ void measure(const Measures& with, std::vector<Patch> patches,
         patches.size(), with.threads,
         [&] { return SampleNumbers(with.evidence.samples.mesh.vertices.size()); },
         [&](std::size_t n, SampleNumbers& numbers) {
-            auto lesion = standUp(with.evidence, with.triangles, std::move(patches[n]),
-                                  with.colon.cleansed.grid(), numbers);
-            if (!lesion || liesBehindUntagged(with.evidence, lesion->patch)) return;
+            if (liesBehindUntagged(with.evidence, patches[n])) return;
+            auto lesion =
+                standUp(with.evidence, std::move(patches[n]), with.colon.cleansed.grid(), numbers);
+            if (!lesion) return;
             const FeatureVector features =
                 featuresOf(with.colon, with.evidence, with.textureDistances, *lesion, numbers);
             const double residueMm = with.films.liftMm(with.colon, with.evidence, lesion->patch);
@@ -284,9 +284,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
     // Each takes mostly one thread, so they go side by side.
     const int some = std::max(1, threadCount(options.threads) / 2);
     std::array<std::vector<Patch>, 3> made;
-    std::optional<SampleTriangles> triangles;
-    const std::array<std::function<void()>, 4> parts{
-        [&] { triangles.emplace(evidence.samples); },
+    const std::array<std::function<void()>, 3> parts{
         [&] {
             if (texture && options.method.texture)
                 made[0] = patchesByTexture(evidence, distances, some);
@@ -303,7 +301,7 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
             parts[part]();
     });
     const ResidueFilms films(colon, evidence);
-    const Measures with{colon, evidence, *triangles, films, distances, options.threads};
+    const Measures with{colon, evidence, films, distances, options.threads};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));

@@ -1,5 +1,7 @@
 #include "cad/lesion.h"
 
+#include "cad/membrane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,108 +17,6 @@ constexpr double anchorMm = 2.0;
 // Where a body's foot is: it has this share of the body's height there. Tuned on eight training
 // phantoms: least error of the diameter of sessile and flat polyps alike.
 constexpr double footShare = 0.15;
-
-// Places of the numbered samples so that each is the mean of its neighbours, those of all others
-// given: conjugate gradients on the graph's Laplacian, which is positive definite as each part of
-// the inside reaches the rim. In single precision and about the first sample: heights are asked for
-// to a hundredth of a millimetre.
-class Membrane {
-public:
-    Membrane(const WallSamples& wall, const SampleNumbers& inside)
-        : origin_(wall.mesh.vertices[inside.sample(0)]) {
-        const std::uint32_t count = inside.count();
-        begin_.reserve(count + 1);
-        begin_.push_back(0);
-        places_.reserve(count), pull_.reserve(count), degrees_.reserve(count);
-        const auto placeOf = [&](std::uint32_t v) {
-            return glm::vec4(wall.mesh.vertices[v] - origin_, 0.0);
-        };
-        for (std::uint32_t n = 0; n < count; ++n) {
-            const std::uint32_t v = inside.sample(n);
-            glm::vec4 pull(0.0f);
-            for (const std::uint32_t next : wall.around(v)) {
-                if (inside.has(next))
-                    links_.push_back(inside.number(next));
-                else
-                    pull += placeOf(next);
-            }
-            // Rows are filled up to whole fours with links to a zero: most are as long, and where a
-            // loop over one ends is predicted.
-            while (links_.size() % 4 != 0)
-                links_.push_back(count);
-            begin_.push_back(std::uint32_t(links_.size()));
-            places_.push_back(placeOf(v));
-            pull_.push_back(pull);
-            degrees_.push_back(float(wall.around(v).size()));
-        }
-        places_.push_back(glm::vec4(0.0f));
-        span();
-    }
-    glm::dvec3 at(std::uint32_t number) const { return origin_ + glm::dvec3(places_[number]); }
-
-private:
-    using Field = std::vector<glm::vec4>;  // the fourth of each is 0
-
-    // product = A · field; returns field · product of each coordinate. The field has a zero more,
-    // to which the links that fill rows up lead.
-    glm::vec4 times(const Field& field, Field& product) const {
-        const glm::vec4* const x = field.data();
-        const std::uint32_t* const links = links_.data();
-        glm::dvec4 dot(0.0);
-        for (std::size_t n = 0; n < product.size(); ++n) {
-            glm::vec4 sum = degrees_[n] * x[n];
-            for (std::uint32_t l = begin_[n]; l < begin_[n + 1]; l += 4) {
-                sum -= x[links[l]];
-                sum -= x[links[l + 1]];
-                sum -= x[links[l + 2]];
-                sum -= x[links[l + 3]];
-            }
-            product[n] = sum;
-            dot += glm::dvec4(x[n] * sum);
-        }
-        return glm::vec4(dot);
-    }
-
-    void span() {
-        // The three coordinates are three systems with one matrix.
-        Field r(pull_.size()), ap(pull_.size());
-        times(places_, r);
-        glm::dvec4 sum(0.0);
-        for (std::size_t n = 0; n < r.size(); ++n) {
-            r[n] = pull_[n] - r[n];
-            sum += glm::dvec4(r[n] * r[n]);
-        }
-        Field p = r;
-        p.push_back(glm::vec4(0.0f));
-        glm::vec4 squares(sum);
-        const glm::vec4 enough = 1e-6f * squares + glm::vec4(1e-12f);
-        for (int step = 0; step < 500; ++step) {
-            if (glm::all(glm::lessThanEqual(squares, enough))) break;
-            const glm::vec4 curvature = times(p, ap);
-            glm::vec4 alpha(0.0f);
-            for (int c = 0; c < 3; ++c)
-                if (curvature[c] > 0.0f) alpha[c] = squares[c] / curvature[c];
-            sum = glm::dvec4(0.0);
-            for (std::size_t n = 0; n < r.size(); ++n) {
-                places_[n] += alpha * p[n];
-                r[n] -= alpha * ap[n];
-                sum += glm::dvec4(r[n] * r[n]);
-            }
-            const glm::vec4 next(sum);
-            glm::vec4 beta(0.0f);
-            for (int c = 0; c < 3; ++c)
-                if (squares[c] > 0.0f) beta[c] = next[c] / squares[c];
-            for (std::size_t n = 0; n < r.size(); ++n)
-                p[n] = r[n] + beta * p[n];
-            squares = next;
-        }
-    }
-
-    glm::dvec3 origin_;
-    Field places_, pull_;
-    std::vector<std::uint32_t> begin_, links_;
-    std::vector<float> degrees_;
-};
 
 double halfVoxelMm(const Grid& grid) {
     const glm::dvec3 spacing = grid.spacingMm();
@@ -188,10 +88,10 @@ struct SpannedPatch {
 };
 
 // Triangles at the widened patch, each once, ascending.
-std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned, const SampleTriangles& triangles) {
+std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned) {
     std::vector<std::uint32_t> faces;
     for (std::uint32_t n = 0; n < spanned.inside; ++n) {
-        const auto around = triangles.around(spanned.numbers.sample(n));
+        const auto around = spanned.wall.trianglesAround(spanned.numbers.sample(n));
         faces.insert(faces.end(), around.begin(), around.end());
     }
     std::sort(faces.begin(), faces.end());
@@ -200,10 +100,10 @@ std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned, const SampleTria
 }
 
 // The body between wall and film, its volume, centre, base and axis; false where it has none.
-bool closeBody(const SpannedPatch& spanned, const SampleTriangles& triangles, Lesion& lesion) {
+bool closeBody(const SpannedPatch& spanned, Lesion& lesion) {
     const TriMesh& wall = spanned.wall.mesh;
     SampleNumbers& numbers = spanned.numbers;
-    const std::vector<std::uint32_t> faces = facesOf(spanned, triangles);
+    const std::vector<std::uint32_t> faces = facesOf(spanned);
     if (faces.empty()) return false;
     // Wall and base have the same triangles; where both have the same place they cancel. Samples
     // beyond the inside anchor the base and are one place of both.
@@ -333,20 +233,6 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
     return distances;
 }
 
-SampleTriangles::SampleTriangles(const WallSamples& wall)
-    : begin_(wall.mesh.vertices.size() + 1, 0) {
-    for (const glm::ivec3& t : wall.mesh.triangles)
-        for (int n = 0; n < 3; ++n)
-            ++begin_[std::size_t(t[n]) + 1];
-    for (std::size_t v = 1; v < begin_.size(); ++v)
-        begin_[v] += begin_[v - 1];
-    triangles_.resize(begin_.back());
-    std::vector<std::uint32_t> at(begin_.begin(), begin_.end() - 1);
-    for (std::size_t t = 0; t < wall.mesh.triangles.size(); ++t)
-        for (int n = 0; n < 3; ++n)
-            triangles_[at[std::size_t(wall.mesh.triangles[t][n])]++] = std::uint32_t(t);
-}
-
 std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
     // Where rows of voxels along i cross the body, in voxels.
     std::map<std::pair<int, int>, std::vector<double>> crossings;
@@ -390,14 +276,14 @@ std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
     return runs;
 }
 
-std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
-                              Patch patch, const Grid& grid, SampleNumbers& numbers) {
+std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const Grid& grid,
+                              SampleNumbers& numbers) {
     const WallSamples& wall = evidence.samples;
     widen(wall, patch.samples, anchorMm, numbers);
     const Membrane film(wall, numbers);
     const SpannedPatch spanned{wall, film, numbers, numbers.count()};
     Lesion lesion;
-    if (!closeBody(spanned, triangles, lesion)) return {};
+    if (!closeBody(spanned, lesion)) return {};
     if (!isAmong(lesion.body.vertices, lesion.centreMm))
         lesion.centreMm = middleOf(wall, patch.samples);
     measureAbove(spanned, patch.samples, lesion);

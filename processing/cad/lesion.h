@@ -40,18 +40,6 @@ struct Lesion {
     std::vector<VoxelRun> voxels;
 };
 
-/// Finds the triangles of samples. Immutable.
-class SampleTriangles {
-public:
-    explicit SampleTriangles(const WallSamples& wall);
-    std::span<const std::uint32_t> around(std::uint32_t sample) const {
-        return {&triangles_[begin_[sample]], begin_[sample + 1] - begin_[sample]};
-    }
-
-private:
-    std::vector<std::uint32_t> begin_, triangles_;
-};
-
 /// Some samples, numbered from 0 in the order in which they were added. Emptied at no cost, so that
 /// one serves for patch after patch (Briggs and Torczon, ACM LOPLAS 1993; 2: 59). Belongs to one
 /// thread.
@@ -85,8 +73,8 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
 
 /// Of a patch that has triangles of its own; else nothing. `numbers`: of all samples, for its own
 /// use. O(samples of the patch · their width).
-std::optional<Lesion> standUp(const WallEvidence& evidence, const SampleTriangles& triangles,
-                              Patch patch, const Grid& grid, SampleNumbers& numbers);
+std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const Grid& grid,
+                              SampleNumbers& numbers);
 
 /// What a finding tells as its tissue, in memory order. These are the body's voxels that are no gas
 /// (a wide body's film lies in the lumen). And since a body thinner than voxels holds a centre only

@@ -4,129 +4,95 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <iterator>
 #include <utility>
 
 namespace haustra::cad {
 namespace {
 
-// Divides triangles with a long edge into two, three or four, until there are none.
+// Divides a triangle with a long edge into two, three or four, and each of these in turn, until
+// there is no long edge. Where an edge is cut depends on its ends alone, and on which was made
+// first, so that the two triangles that share it agree, whichever comes first.
 class Division {
 public:
-    Division(WallSamples& samples, double mostMm)
-        : samples_(samples), mostMm2_(mostMm * mostMm), open_(samples.mesh.triangles.size()) {
-        std::iota(open_.begin(), open_.end(), 0u);
+    Division(TriMesh& mesh, double mostMm, std::size_t expectedVertices)
+        : mesh_(mesh),
+          mostMm2_(mostMm * mostMm),
+          firstOf_(mesh.vertices.size(), -1),
+          roundOf_(mesh.vertices.size(), 0) {
+        firstOf_.reserve(expectedVertices);
+        roundOf_.reserve(expectedVertices);
+        middles_.reserve(expectedVertices);
     }
 
-    void run() {
-        while (findCuts())
-            divideAll();
-    }
+    // What a triangle of the mesh is divided into, appended in order.
+    void divide(glm::ivec3 t, std::vector<glm::ivec3>& out) { divide(t, 1, out); }
 
 private:
-    // A triangle and where its edges are cut, as middleOf() says.
-    struct Cut {
-        std::uint32_t triangle;
-        glm::ivec3 middles;
-    };
-
-    // False where no edge is too long.
-    bool findCuts() {
-        firstOf_.assign(samples_.mesh.vertices.size(), -1);
-        middles_.clear(), cuts_.clear();
-        for (const std::uint32_t number : open_) {
-            const glm::ivec3 t = samples_.mesh.triangles[number];
-            const int ab = middleOf(t.x, t.y), bc = middleOf(t.y, t.z), ca = middleOf(t.z, t.x);
-            if (ab >= 0 || bc >= 0 || ca >= 0) cuts_.push_back({number, {ab, bc, ca}});
-        }
-        return !cuts_.empty();
-    }
-
-    void divideAll() {
-        std::vector<glm::ivec3>& triangles = samples_.mesh.triangles;
-        std::vector<glm::ivec3> divided;
-        std::vector<std::int32_t> sources;
-        divided.reserve(triangles.size() + 3 * cuts_.size());
-        sources.reserve(divided.capacity());
-        open_.clear();
-        std::size_t next = 0;  // triangles before it are in `divided`
-        const auto keepUntil = [&](std::size_t end) {
-            divided.insert(divided.end(), triangles.begin() + std::ptrdiff_t(next),
-                           triangles.begin() + std::ptrdiff_t(end));
-            sources.insert(sources.end(), samples_.sourceTriangle.begin() + std::ptrdiff_t(next),
-                           samples_.sourceTriangle.begin() + std::ptrdiff_t(end));
-            next = end;
-        };
-        for (const Cut& cut : cuts_) {
-            keepUntil(cut.triangle);
-            divide(triangles[cut.triangle], cut.middles, divided);
-            for (std::size_t t = sources.size(); t < divided.size(); ++t)
-                open_.push_back(std::uint32_t(t));
-            sources.resize(divided.size(), samples_.sourceTriangle[cut.triangle]);
-            next = cut.triangle + 1;
-        }
-        keepUntil(triangles.size());
-        triangles = std::move(divided);
-        samples_.sourceTriangle = std::move(sources);
-    }
-
     double squaredMm2(int a, int b) const {
-        const glm::dvec3 edge =
-            samples_.mesh.vertices[std::size_t(a)] - samples_.mesh.vertices[std::size_t(b)];
+        const glm::dvec3 edge = mesh_.vertices[std::size_t(a)] - mesh_.vertices[std::size_t(b)];
         return glm::dot(edge, edge);
     }
 
     // −1: the edge is short enough. One that takes an odd number of pieces is cut beside its
     // middle, where whole pieces lie on either side: three of 0.5 mm instead of four of 0.37 mm.
-    int middleOf(int a, int b) {
+    int middleOf(int a, int b, int round) {
         const double mm2 = squaredMm2(a, b);
-        if (mm2 <= mostMm2_) return -1;
-        if (a > b) std::swap(a, b);
+        if (!(mm2 > mostMm2_)) return -1;
+        // The shorter part is on the side of the end that was made first.
+        const auto orderOf = [&](int v) { return std::pair(roundOf_[std::size_t(v)], v); };
+        if (orderOf(a) > orderOf(b)) std::swap(a, b);
         for (int n = firstOf_[std::size_t(a)]; n >= 0; n = middles_[std::size_t(n)].next)
             if (middles_[std::size_t(n)].otherEnd == b) return middles_[std::size_t(n)].vertex;
-        const int vertex = int(samples_.mesh.vertices.size());
+        const int vertex = int(mesh_.vertices.size());
         middles_.push_back({b, vertex, firstOf_[std::size_t(a)]});
         firstOf_[std::size_t(a)] = int(middles_.size()) - 1;
         const double pieces = std::max(2.0, std::ceil(std::sqrt(mm2 / mostMm2_) - 1e-9));
-        samples_.mesh.vertices.push_back(glm::mix(samples_.mesh.vertices[std::size_t(a)],
-                                                  samples_.mesh.vertices[std::size_t(b)],
-                                                  std::floor(0.5 * pieces) / pieces));
+        mesh_.vertices.push_back(glm::mix(mesh_.vertices[std::size_t(a)],
+                                          mesh_.vertices[std::size_t(b)],
+                                          std::floor(0.5 * pieces) / pieces));
+        firstOf_.push_back(-1);
+        roundOf_.push_back(std::uint8_t(round));
         return vertex;
     }
 
-    void divide(glm::ivec3 t, glm::ivec3 m, std::vector<glm::ivec3>& out) const {
+    void divide(glm::ivec3 t, int round, std::vector<glm::ivec3>& out) {
+        const int ab = middleOf(t.x, t.y, round), bc = middleOf(t.y, t.z, round),
+                  ca = middleOf(t.z, t.x, round);
+        const glm::ivec3 m(ab, bc, ca);
+        const auto further = [&](int a, int b, int c) { divide({a, b, c}, round + 1, out); };
         const int cut = (m.x >= 0) + (m.y >= 0) + (m.z >= 0);
-        if (cut == 3) {
-            out.insert(out.end(), {glm::ivec3(t[0], m[0], m[2]), glm::ivec3(m[0], t[1], m[1]),
-                                   glm::ivec3(m[2], m[1], t[2]), glm::ivec3(m[0], m[1], m[2])});
+        if (cut == 0) {
+            out.push_back(t);
+        } else if (cut == 3) {
+            further(t[0], m[0], m[2]), further(m[0], t[1], m[1]);
+            further(m[2], m[1], t[2]), further(m[0], m[1], m[2]);
         } else if (cut == 1) {
             const int n = m[0] >= 0 ? 0 : m[1] >= 0 ? 1 : 2;
             const int a = t[n], b = t[(n + 1) % 3], c = t[(n + 2) % 3];
-            out.insert(out.end(), {glm::ivec3(a, m[n], c), glm::ivec3(m[n], b, c)});
+            further(a, m[n], c), further(m[n], b, c);
         } else {
             const int n = m[0] < 0 ? 0 : m[1] < 0 ? 1 : 2;  // the edge that stays
             const int a = t[n], b = t[(n + 1) % 3], c = t[(n + 2) % 3];
-            const int bc = m[(n + 1) % 3], ca = m[(n + 2) % 3];
-            out.push_back(glm::ivec3(ca, bc, c));
+            const int onBc = m[(n + 1) % 3], onCa = m[(n + 2) % 3];
+            further(onCa, onBc, c);
             // The shorter diagonal.
-            if (squaredMm2(a, bc) <= squaredMm2(b, ca))
-                out.insert(out.end(), {glm::ivec3(a, b, bc), glm::ivec3(a, bc, ca)});
+            if (squaredMm2(a, onBc) <= squaredMm2(b, onCa))
+                further(a, b, onBc), further(a, onBc, onCa);
             else
-                out.insert(out.end(), {glm::ivec3(a, b, ca), glm::ivec3(b, bc, ca)});
+                further(a, b, onCa), further(b, onBc, onCa);
         }
     }
 
-    WallSamples& samples_;
+    TriMesh& mesh_;
     double mostMm2_;
-    // Those that may have a long edge, ascending: all at first, then what others were divided into.
-    std::vector<std::uint32_t> open_;
-    std::vector<Cut> cuts_;
-    // Of each vertex the edges to later ones that have been cut, as a list: a vertex has few.
+    // Of each vertex the edges to younger ones that have been cut, as a list: a vertex has few.
     struct Middle {
         int otherEnd = 0, vertex = 0, next = -1;
     };
     std::vector<int> firstOf_;
     std::vector<Middle> middles_;
+    std::vector<std::uint8_t> roundOf_;  // in which a vertex was made; 0: the surface's own
 };
 
 void measureAreas(WallSamples& samples) {
@@ -142,37 +108,56 @@ void measureAreas(WallSamples& samples) {
     }
 }
 
-void joinNeighbours(WallSamples& samples, int threads) {
+void findTriangles(WallSamples& samples) {
     const std::size_t count = samples.mesh.vertices.size();
-    // Each edge from both triangles and both ends; doubles go once sorted.
-    std::vector<std::uint32_t> begin(count + 1, 0);
+    std::vector<std::uint32_t>& begin = samples.beginTriangles;
+    begin.assign(count + 1, 0);
     for (const glm::ivec3& t : samples.mesh.triangles)
         for (int n = 0; n < 3; ++n)
-            begin[std::size_t(t[n]) + 1] += 2;
+            ++begin[std::size_t(t[n]) + 1];
     for (std::size_t v = 0; v < count; ++v)
         begin[v + 1] += begin[v];
-    std::vector<std::uint32_t> all(begin[count]), at(begin.begin(), begin.end() - 1);
-    for (const glm::ivec3& t : samples.mesh.triangles) {
-        for (int n = 0; n < 3; ++n) {
-            all[at[std::size_t(t[n])]++] = std::uint32_t(t[(n + 1) % 3]);
-            all[at[std::size_t(t[n])]++] = std::uint32_t(t[(n + 2) % 3]);
-        }
-    }
+    samples.triangles.resize(begin[count]);
+    std::vector<std::uint32_t> at(begin.begin(), begin.end() - 1);
+    for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t)
+        for (int n = 0; n < 3; ++n)
+            samples.triangles[at[std::size_t(samples.mesh.triangles[t][n])]++] = std::uint32_t(t);
+}
+
+// By the triangles around each vertex.
+void joinNeighbours(WallSamples& samples, int threads) {
+    const std::size_t count = samples.mesh.vertices.size();
+    constexpr std::size_t block = 16384;
+    // Of each block of vertices, one after the other.
+    std::vector<std::vector<std::uint32_t>> found((count + block - 1) / block);
     samples.begin.assign(count + 1, 0);
-    parallelFor(count, 16384, threads, [&](std::size_t from, std::size_t to) {
+    parallelFor(count, block, threads, [&](std::size_t from, std::size_t to) {
+        std::vector<std::uint32_t>& list = found[from / block];
+        list.reserve(8 * (to - from));
+        // The corners after and before it: the same ones where the mesh is closed.
+        std::vector<std::uint32_t> after, before;
         for (std::size_t v = from; v < to; ++v) {
-            const auto first = all.begin() + begin[v], last = all.begin() + begin[v + 1];
-            std::sort(first, last);
-            samples.begin[v + 1] = std::uint32_t(std::unique(first, last) - first);
+            after.clear(), before.clear();
+            for (const std::uint32_t number : samples.trianglesAround(std::uint32_t(v))) {
+                const glm::ivec3 t = samples.mesh.triangles[number];
+                const int n = t.x == int(v) ? 0 : t.y == int(v) ? 1 : 2;
+                after.push_back(std::uint32_t(t[(n + 1) % 3]));
+                before.push_back(std::uint32_t(t[(n + 2) % 3]));
+            }
+            std::ranges::sort(after), std::ranges::sort(before);
+            const std::size_t begin = list.size();
+            std::ranges::set_union(after, before, std::back_inserter(list));
+            // Twice in one of them where triangles meet in no order.
+            list.erase(std::unique(list.begin() + std::ptrdiff_t(begin), list.end()), list.end());
+            samples.begin[v + 1] = std::uint32_t(list.size() - begin);
         }
     });
     for (std::size_t v = 0; v < count; ++v)
         samples.begin[v + 1] += samples.begin[v];
     samples.neighbours.resize(samples.begin[count]);
-    parallelFor(count, 16384, threads, [&](std::size_t from, std::size_t to) {
-        for (std::size_t v = from; v < to; ++v)
-            std::copy_n(all.begin() + begin[v], samples.begin[v + 1] - samples.begin[v],
-                        samples.neighbours.begin() + samples.begin[v]);
+    parallelFor(found.size(), 1, threads, [&](std::size_t from, std::size_t to) {
+        for (std::size_t n = from; n < to; ++n)
+            std::ranges::copy(found[n], samples.neighbours.begin() + samples.begin[n * block]);
     });
 }
 
@@ -224,18 +209,34 @@ void renumber(TriMesh& mesh) {
     mesh.vertices = std::move(vertices);
 }
 
+// About how many it takes, rather too many: memory that is set aside and not used costs nothing.
+std::size_t expectedSamples(const TriMesh& surface, double mostSpacingMm) {
+    double areaMm2 = 0.0;
+    for (const glm::ivec3& t : surface.triangles) {
+        const glm::dvec3 a = surface.vertices[std::size_t(t.x)];
+        areaMm2 += 0.5 * glm::length(glm::cross(surface.vertices[std::size_t(t.y)] - a,
+                                                surface.vertices[std::size_t(t.z)] - a));
+    }
+    return surface.vertices.size() + std::size_t(4.0 * areaMm2 / (mostSpacingMm * mostSpacingMm));
+}
+
 }  // namespace
 
 WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads) {
     WallSamples samples;
+    const std::size_t expected = expectedSamples(surface, mostSpacingMm);
+    samples.mesh.vertices.reserve(expected);
     samples.mesh.vertices = surface.vertices;
-    samples.sourceTriangle = nearbyOrder(surface);
-    samples.mesh.triangles.reserve(surface.triangles.size());
-    for (const std::int32_t t : samples.sourceTriangle)
-        samples.mesh.triangles.push_back(surface.triangles[std::size_t(t)]);
-    Division(samples, mostSpacingMm).run();
+    samples.mesh.triangles.reserve(2 * expected);
+    samples.sourceTriangle.reserve(2 * expected);
+    Division division(samples.mesh, mostSpacingMm, expected);
+    for (const std::int32_t t : nearbyOrder(surface)) {
+        division.divide(surface.triangles[std::size_t(t)], samples.mesh.triangles);
+        samples.sourceTriangle.resize(samples.mesh.triangles.size(), t);
+    }
     renumber(samples.mesh);
     measureAreas(samples);
+    findTriangles(samples);
     joinNeighbours(samples, threads);
     return samples;
 }

@@ -20,10 +20,17 @@ struct WallSamples {
     /// The neighbours of all vertices in one list: those of vertex v are at begin[v] and on, before
     /// begin[v + 1].
     std::vector<std::uint32_t> begin, neighbours;
+    /// The triangles at all vertices in one list, by their numbers in mesh.triangles: those of
+    /// vertex v are at beginTriangles[v] and on, before beginTriangles[v + 1].
+    std::vector<std::uint32_t> beginTriangles, triangles;
 
     /// Vertices next to a vertex, ascending.
     std::span<const std::uint32_t> around(std::uint32_t v) const {
         return {neighbours.data() + begin[v], neighbours.data() + begin[v + 1]};
+    }
+    /// Triangles at a vertex, ascending.
+    std::span<const std::uint32_t> trianglesAround(std::uint32_t v) const {
+        return {triangles.data() + beginTriangles[v], triangles.data() + beginTriangles[v + 1]};
     }
 };
 

@@ -121,8 +121,7 @@ TEST(Detect, GasBetweenAWidePatchAndItsFilmIsNoTissue) {
     for (std::uint32_t v = 0; v < places.size(); ++v)
         if (glm::distance(places[v], glm::dvec3(0, 0, lumenMm)) < 10.0) patch.samples.push_back(v);
     cad::SampleNumbers numbers(places.size());
-    const auto lesion = cad::standUp(evidence, cad::SampleTriangles(evidence.samples), patch,
-                                     ball.hu.grid(), numbers);
+    const auto lesion = cad::standUp(evidence, patch, ball.hu.grid(), numbers);
     ASSERT_TRUE(lesion);
     const auto gasShare = [&](const std::vector<VoxelRun>& runs) {
         double gas = 0.0, all = 0.0;

@@ -1,6 +1,8 @@
 // Samples of the wall, derivatives of the scan, and shapes whose curvatures are known.
 #include "cad/candidates.h"
+#include "cad/gaussian_kernel.h"
 #include "cad/lesion.h"
+#include "cad/membrane.h"
 #include "cad/standing_height.h"
 #include "cad/wall_lift.h"
 #include "cad/wall_shape.h"
@@ -9,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -193,13 +196,78 @@ TEST(WallSamples, LieCloseOnTheSurfaceItself) {
         }
     }
     for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v) {
-        const auto around = samples.around(v);
-        EXPECT_TRUE(std::ranges::is_sorted(around));
-        for (const std::uint32_t next : around) {
-            EXPECT_NE(next, v);
-            EXPECT_TRUE(std::ranges::binary_search(samples.around(next), v));
+        // Each triangle that has it as a corner, and each other corner of these, once.
+        std::vector<std::uint32_t> triangles;
+        std::set<std::uint32_t> corners;
+        for (std::uint32_t t = 0; t < samples.mesh.triangles.size(); ++t) {
+            const glm::ivec3 each = samples.mesh.triangles[t];
+            if (!glm::any(glm::equal(each, glm::ivec3(int(v))))) continue;
+            triangles.push_back(t);
+            for (int n = 0; n < 3; ++n)
+                corners.insert(std::uint32_t(each[n]));
         }
+        corners.erase(v);
+        EXPECT_TRUE(std::ranges::equal(samples.trianglesAround(v), triangles));
+        EXPECT_TRUE(std::ranges::equal(samples.around(v), corners));
     }
+}
+
+TEST(Membrane, LiesInThePlaneThatItsRimLiesIn) {
+    // Whatever stands within a plane rim, the film is the plane, and its places stay within the
+    // rim. A large film, found on two levels, takes no more steps than a small one, which has a
+    // tenth of its width; by one level it would take some ten times as many.
+    TriMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    int fewSteps = 0;
+    for (const double spacing : {0.05, 0.005}) {
+        cad::WallSamples samples = cad::sampleWall(mesh, spacing);
+        cad::SampleNumbers inside(samples.mesh.vertices.size());
+        const auto planeAt = [](glm::dvec3 p) { return 0.1 * p.x - 0.3 * p.y; };
+        for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v) {
+            glm::dvec3& p = samples.mesh.vertices[v];
+            if (std::max(std::abs(p.x - 0.5), std::abs(p.y - 0.5)) < 0.499) inside.add(v);
+            p.z = inside.has(v)
+                      ? std::sin(std::numbers::pi * p.x) * std::sin(std::numbers::pi * p.y)
+                      : planeAt(p);
+            p *= 20.0;
+        }
+        const bool large = spacing < 0.01;
+        ASSERT_EQ(inside.count() >= cad::Membrane::largeFilm, large);
+        const cad::Membrane film(samples, inside);
+        for (std::uint32_t n = 0; n < inside.count(); ++n) {
+            const glm::dvec3 p = film.at(n);
+            ASSERT_NEAR(p.z, planeAt(p), 0.02);
+            ASSERT_TRUE(p.x > 0.0 && p.x < 20.0 && p.y > 0.0 && p.y < 20.0);
+        }
+        if (large)
+            EXPECT_LE(film.steps(), fewSteps);
+        else
+            fewSteps = film.steps();
+    }
+}
+
+TEST(WallShape, ABroadScaleAsksForNoMoreAroundTheWallThanItsKernelReaches) {
+    // So that a smaller box gives the same.
+    const Grid grid = axisAlignedGrid({64, 64, 64}, {0.7, 0.7, 1.1}, {-22, -22, -35});
+    const auto scan = sampled(grid, [&](glm::dvec3 p) {
+        return edge(glm::length(p) - 12.0) + 30.0 * std::sin(p.x) * std::cos(1.7 * p.y + p.z);
+    });
+    const double reach = cad::kernelDeviations * cad::broadSigmaMm + 1.1;
+    const auto around = [&](double mm) {
+        return cad::SmoothScan(scan, glm::dvec3(-3.0 - mm), glm::dvec3(3.0 + mm), cad::broadSigmaMm,
+                               1);
+    };
+    const cad::SmoothScan narrow = around(reach), wide = around(reach + 8.0),
+                          short_ = around(reach - 5.0);
+    double off = 0.0;
+    for (const glm::dvec3 p : {glm::dvec3(-3.0), glm::dvec3(3.0), glm::dvec3(3.0, -3.0, 0.4)}) {
+        EXPECT_NEAR(narrow.derivatives(p).hu, wide.derivatives(p).hu, 1e-2);
+        EXPECT_LT(glm::distance(narrow.derivatives(p).gradient, wide.derivatives(p).gradient),
+                  1e-2);
+        off = std::max(off, std::abs(short_.derivatives(p).hu - wide.derivatives(p).hu));
+    }
+    EXPECT_GT(off, 1e-2);
 }
 
 // A closed wall 120 mm long and 20 mm wide, a cigar, each sample of which bulges where asked.
@@ -405,10 +473,9 @@ TEST(WallLift, SeesWhatASoapFilmSpansOver) {
     // d²/16r. Beneath a patch that is only the lesion's middle it hangs from the lesion itself.
     Plateau plateau;
     plateau.make();
-    const cad::SampleTriangles triangles(plateau.evidence.samples);
     const auto lesionWithin = [&](double mm) {
         cad::SampleNumbers numbers(plateau.evidence.samples.mesh.vertices.size());
-        return cad::standUp(plateau.evidence, triangles, plateau.patchWithin(mm),
+        return cad::standUp(plateau.evidence, plateau.patchWithin(mm),
                             plateau.evidence.smooth->grid(), numbers);
     };
     const auto whole = lesionWithin(7.5), middle = lesionWithin(5.0);
@@ -461,8 +528,8 @@ TEST(Lesion, HasItsCentreInItsBodyEvenWhereThatCancels) {
         Plateau plateau{.heightMm = heightMm};
         plateau.make();
         cad::SampleNumbers numbers(plateau.evidence.samples.mesh.vertices.size());
-        return cad::standUp(plateau.evidence, cad::SampleTriangles(plateau.evidence.samples),
-                            plateau.patchWithin(9.0), plateau.evidence.smooth->grid(), numbers);
+        return cad::standUp(plateau.evidence, plateau.patchWithin(9.0),
+                            plateau.evidence.smooth->grid(), numbers);
     };
     double low = -1.0, high = 6.0;
     ASSERT_LT(lesionOf(low)->volumeMm3, 0.0);
@@ -479,8 +546,7 @@ TEST(Lesion, HasItsCentreInItsBodyEvenWhereThatCancels) {
 
 std::optional<cad::Lesion> lesionOf(const cad::WallEvidence& evidence, cad::Patch patch) {
     cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
-    const cad::SampleTriangles triangles(evidence.samples);
-    return cad::standUp(evidence, triangles, std::move(patch), evidence.smooth->grid(), numbers);
+    return cad::standUp(evidence, std::move(patch), evidence.smooth->grid(), numbers);
 }
 
 double standingOf(const cad::WallEvidence& evidence, const cad::Lesion& lesion, bool hasStalk) {
@@ -626,7 +692,7 @@ TEST(Lesion, ADiameterIsTheGreatestDistance) {
     for (int n = 0; n < 200; ++n) {
         const double z = 1.0 - (2.0 * n + 1.0) / 200, r = std::sqrt(1.0 - z * z);
         wall.mesh.vertices.push_back(
-            {5.0 * r * std::cos(2.4 * n), 3.0 * r * std::sin(2.4 * n), 2.0 * z});
+            {500.0 + 5.0 * r * std::cos(2.4 * n), 3.0 * r * std::sin(2.4 * n), 2.0 * z - 700.0});
         all.push_back(std::uint32_t(n));
     }
     double most = 0.0;
@@ -638,6 +704,9 @@ TEST(Lesion, ADiameterIsTheGreatestDistance) {
     EXPECT_GT(found.mm, 0.99 * most);
     EXPECT_DOUBLE_EQ(glm::distance(wall.mesh.vertices[found.from], wall.mesh.vertices[found.to]),
                      found.mm);
+    EXPECT_EQ(cad::diameterOf(wall, {}).mm, 0.0);
+    EXPECT_EQ(cad::diameterOf(wall, std::vector<std::uint32_t>{7}).mm, 0.0);
+    EXPECT_EQ(cad::diameterOf(wall, std::vector<std::uint32_t>{7, 7}).mm, 0.0);
 }
 
 }  // namespace
