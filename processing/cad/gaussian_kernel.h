@@ -5,7 +5,7 @@
 
 namespace haustra::cad {
 
-/// How far to either side weights reach.
+/// How far to either side weights reach, in standard deviations.
 inline constexpr double kernelDeviations = 3.0;
 
 /// A Gaussian's weights at whole numbers, kernelDeviations to either side and up to the next whole

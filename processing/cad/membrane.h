@@ -12,8 +12,8 @@
 namespace haustra::cad {
 
 /// Finds places for the numbered samples so that each is the mean of its neighbours, while all
-/// other samples stay where they are. There is one numbered sample at least, and each connected
-/// part of them has a neighbour that is none. Immutable.
+/// other samples stay where they are. At least one sample is numbered, and each connected part of
+/// the numbered ones has a neighbour that is not among them. Immutable.
 ///
 /// By conjugate gradients on the graph's Laplacian A, in single precision, in coordinates relative
 /// to the first sample: heights are asked for to a hundredth of a millimetre. The number of steps
@@ -28,7 +28,7 @@ public:
     Membrane(const WallSamples& wall, const SampleNumbers& inside);
     /// Patient coordinates.
     glm::dvec3 at(std::uint32_t number) const { return origin_ + glm::dvec3(places_[number]); }
-    /// Of conjugate gradients, that it took.
+    /// How many steps of conjugate gradients it took.
     int steps() const { return steps_; }
 
 private:
