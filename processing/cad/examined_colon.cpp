@@ -16,8 +16,7 @@ ExaminedColon::ExaminedColon(const PreparedColon& colon, const EvidenceOptions& 
                                      colon.rebuilt});
         EvidenceOptions again = options;
         again.progress = {};
-        evidence_ = {};  // before as much is made again
-        evidence_ = gatherEvidence(*colon_, again);
+        evidence_ = gatherEvidence(*colon_, again, std::move(evidence_));
         ofSoftened = wallEdges(*colon_, evidence_);
     }
     edgeWarning_ = warningOfEdges(*edges, ofSoftened);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace haustra::cad {
 namespace {
@@ -124,12 +125,16 @@ TransferFunction transferFunctionFor(const EvidenceOptions& options,
                                     : automaticBiopsyTransfer(statistics);
 }
 
-WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options) {
+WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options,
+                            WallEvidence ofSurface) {
     const auto tell = [&](double share) {
         if (options.progress) options.progress(share);
     };
     const int threads = threadCount(options.threads);
     WallEvidence evidence;
+    evidence.samples = std::move(ofSurface.samples);
+    evidence.alongColon = std::move(ofSurface.alongColon);
+    ofSurface = {};  // before as much is made again
     // Of the broad scale shapes are asked for at the wall alone, whose coefficients are smoothed
     // from so far; the spline's own two voxels are SmoothScan's margin.
     const glm::dvec3 spacing = colon.cleansed.grid().spacingMm();
@@ -142,13 +147,18 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
             smoothedAround(colon, sigmaMm, std::max(1, threads - 1), reachMm));
     };
     const std::array<std::function<void()>, 3> parts{
-        [&] { evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads); },
+        [&] {
+            if (evidence.samples.mesh.vertices.empty())
+                evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
+        },
         [&] {
             evidence.smooth = smoothed(shapeSigmaMm, biopsyReachMm);
             broad = smoothed(broadSigmaMm, broadReachMm);
         },
         [&] {
-            evidence.alongColon = std::make_unique<const AlongColon>(colon.flat, colon.centerline);
+            if (!evidence.alongColon)
+                evidence.alongColon =
+                    std::make_unique<const AlongColon>(colon.flat, colon.centerline);
         }};
     parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t part = begin; part < end; ++part)

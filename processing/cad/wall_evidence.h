@@ -94,6 +94,9 @@ WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smoo
 TransferFunction transferFunctionFor(const EvidenceOptions& options,
                                      const WallStatistics& statistics);
 
-WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options);
+/// `ofSurface`: evidence of the same surface and centerline in another scan. It gives its samples
+/// and its axis, which are the same, and is spent; empty: they are made.
+WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options,
+                            WallEvidence ofSurface = {});
 
 }  // namespace haustra::cad

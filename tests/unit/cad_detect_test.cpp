@@ -353,6 +353,13 @@ TEST(Detect, WhatAKernelAddsToEdgesIsTakenOffFirst) {
         const auto edges = cad::wallEdges(examined.colon(), examined.evidence());
         ASSERT_TRUE(edges);
         EXPECT_NEAR(edges->peak, cad::usualPeak, 0.005) << "as it is looked at";
+        // By the samples that there were already.
+        const auto afresh = cad::gatherEvidence(examined.colon(), {});
+        const auto& taken = examined.evidence();
+        EXPECT_TRUE(std::ranges::equal(afresh.samples.mesh.vertices, taken.samples.mesh.vertices));
+        EXPECT_TRUE(std::ranges::equal(afresh.rays, taken.rays, {}, &cad::BiopsyRay::peakHu,
+                                       &cad::BiopsyRay::peakHu));
+        EXPECT_NE(taken.alongColon, nullptr);
         double off = 0.0, before = 0.0;
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             const int made = examined.colon().cleansed[n];
