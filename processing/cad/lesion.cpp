@@ -91,11 +91,19 @@ struct SpannedPatch {
 std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned) {
     std::vector<std::uint32_t> faces;
     for (std::uint32_t n = 0; n < spanned.inside; ++n) {
-        const auto around = spanned.wall.trianglesAround(spanned.numbers.sample(n));
-        faces.insert(faces.end(), around.begin(), around.end());
+        // Each is told by the first of its corners that the film spans.
+        const auto isToldBefore = [&](int corner) {
+            const auto sample = std::uint32_t(corner);
+            return spanned.numbers.has(sample) && spanned.numbers.number(sample) < n;
+        };
+        for (const std::uint32_t t : spanned.wall.trianglesAround(spanned.numbers.sample(n))) {
+            const glm::ivec3 corners = spanned.wall.mesh.triangles[t];
+            if (isToldBefore(corners.x) || isToldBefore(corners.y) || isToldBefore(corners.z))
+                continue;
+            faces.push_back(t);
+        }
     }
     std::sort(faces.begin(), faces.end());
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
 }
 

@@ -1,7 +1,10 @@
 #include "cad/texture.h"
 
+#include "cad/fours.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include <opencv2/core.hpp>
 
@@ -119,13 +122,23 @@ TextureModel learnTexture(std::span<const TextureVector> all, std::span<const Te
 }
 
 double textureDistance(const TextureModel& model, const TextureVector& vector) {
+    TextureVector off;
+    for (std::size_t c = 0; c < textureSize; ++c)
+        off[c] = vector[c] - model.mean[c];
     float squared = 0.0f;
     for (int n = 0; n < model.count(); ++n) {
         const float* row = &model.components[std::size_t(n) * textureSize];
-        float coordinate = 0.0f;
-        for (std::size_t c = 0; c < textureSize; ++c)
-            coordinate += row[c] * (vector[c] - model.mean[c]);
-        const float away = coordinate - model.polyp[std::size_t(n)];
+        FourFloats sums{};
+        std::size_t c = 0;
+        for (; c + 4 <= textureSize; c += 4) {
+            FourFloats weights, values;
+            std::memcpy(&weights, row + c, sizeof weights);
+            std::memcpy(&values, off.data() + c, sizeof values);
+            sums += weights * values;
+        }
+        float away = sums[0] + sums[1] + sums[2] + sums[3] - model.polyp[std::size_t(n)];
+        for (; c < textureSize; ++c)
+            away += row[c] * off[c];
         squared += away * away;
     }
     return model.threshold > 0.0 ? std::sqrt(double(squared)) / model.threshold : 1e9;

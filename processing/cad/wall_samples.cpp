@@ -134,21 +134,19 @@ void joinNeighbours(WallSamples& samples, int threads) {
     parallelFor(count, block, threads, [&](std::size_t from, std::size_t to) {
         std::vector<std::uint32_t>& list = found[from / block];
         list.reserve(8 * (to - from));
-        // The corners after and before it: the same ones where the mesh is closed.
-        std::vector<std::uint32_t> after, before;
         for (std::size_t v = from; v < to; ++v) {
-            after.clear(), before.clear();
+            const std::size_t begin = list.size();
             for (const std::uint32_t number : samples.trianglesAround(std::uint32_t(v))) {
                 const glm::ivec3 t = samples.mesh.triangles[number];
-                const int n = t.x == int(v) ? 0 : t.y == int(v) ? 1 : 2;
-                after.push_back(std::uint32_t(t[(n + 1) % 3]));
-                before.push_back(std::uint32_t(t[(n + 2) % 3]));
+                for (int n = 0; n < 3; ++n) {
+                    const auto corner = std::uint32_t(t[n]);
+                    const auto own =
+                        std::ranges::subrange(list.begin() + std::ptrdiff_t(begin), list.end());
+                    if (corner != v && std::ranges::find(own, corner) == own.end())
+                        list.push_back(corner);
+                }
             }
-            std::ranges::sort(after), std::ranges::sort(before);
-            const std::size_t begin = list.size();
-            std::ranges::set_union(after, before, std::back_inserter(list));
-            // Twice in one of them where triangles meet in no order.
-            list.erase(std::unique(list.begin() + std::ptrdiff_t(begin), list.end()), list.end());
+            std::sort(list.begin() + std::ptrdiff_t(begin), list.end());
             samples.begin[v + 1] = std::uint32_t(list.size() - begin);
         }
     });

@@ -24,13 +24,16 @@ WallShape shapeOf(const Derivatives& scan) {
     const double perGradient = 1.0 / steep;
     const glm::dvec3 n = perGradient * scan.gradient;
     shape.intoWall = glm::vec3(n);
-    // Two directions along the wall; the shape operator there is the Hessian over the gradient.
-    const glm::dvec3 aside = std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(n, aside)), v = glm::cross(n, u);
-    const glm::dvec3 hu = scan.hessian * u, hv = scan.hessian * v;
-    const double a = -perGradient * glm::dot(u, hu), b = -perGradient * glm::dot(u, hv),
-                 c = -perGradient * glm::dot(v, hv);
-    const double mean = 0.5 * (a + c), spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
+    // Sum and product of the level surface's principal curvatures, by its gradient and Hessian
+    // (Goldman, Computer Aided Geometric Design 2005; 22: 632); the cofactors' rows are products
+    // of the Hessian's.
+    const glm::dmat3& h = scan.hessian;
+    const double mean = -0.5 * perGradient * (h[0][0] + h[1][1] + h[2][2] - glm::dot(n, h * n));
+    const glm::dvec3 cofactors(glm::dot(n, glm::cross(h[1], h[2])),
+                               glm::dot(n, glm::cross(h[2], h[0])),
+                               glm::dot(n, glm::cross(h[0], h[1])));
+    const double gaussian = perGradient * perGradient * glm::dot(n, cofactors);
+    const double spread = std::sqrt(std::max(0.0, mean * mean - gaussian));
     shape.k1 = float(mean + spread), shape.k2 = float(mean - spread);
     return shape;
 }
