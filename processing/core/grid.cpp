@@ -35,6 +35,15 @@ bool sameGrid(const Grid& a, const Grid& b) {
     return true;
 }
 
+bool Grid::hasRightAngles() const {
+    const glm::dmat3 axes(patientFromVoxel);
+    for (int a = 0; a < 3; ++a) {
+        const glm::dvec3 u = glm::normalize(axes[a]), v = glm::normalize(axes[(a + 1) % 3]);
+        if (!(std::abs(glm::dot(u, v)) <= 1e-3)) return false;
+    }
+    return true;
+}
+
 Result<void> checkGrid(const Grid& grid, const std::string& place) {
     for (int axis = 0; axis < 3; ++axis) {
         if (grid.size[axis] < 1 || grid.size[axis] > maxGridSide) {

@@ -37,6 +37,8 @@ struct Grid {
     /// Distances between neighbouring voxel centres along i, j and k, mm.
     glm::dvec3 spacingMm() const;
     double voxelVolumeMm3() const;
+    /// To within 0.06 degrees.
+    bool hasRightAngles() const;
     /// Patient point (mm) of a voxel coordinate; fractions lie between centres.
     glm::dvec3 patientFromVoxelPoint(glm::dvec3 voxel) const {
         return glm::dvec3(patientFromVoxel * glm::dvec4(voxel, 1.0));

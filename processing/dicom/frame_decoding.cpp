@@ -2,6 +2,7 @@
 
 #include "dicom/dicom_library.h"
 #include "dicom/jpeg2000.h"
+#include "dicom/jpeg_header.h"
 
 #include <memory>
 #include <optional>
@@ -16,6 +17,10 @@
 namespace haustra::dicom {
 namespace {
 
+/// Any process of JPEG itself, JPEG-LS and JPEG 2000 apart.
+bool isJpeg(E_TransferSyntax syntax) {
+    return syntax >= EXS_JPEGProcess1 && syntax <= EXS_JPEGProcess14SV1;
+}
 bool isJpeg2000(E_TransferSyntax syntax) {
     return syntax == EXS_JPEG2000 || syntax == EXS_JPEG2000LosslessOnly;
 }
@@ -25,9 +30,27 @@ std::size_t littleEndian32(const std::uint8_t* at) {
            std::size_t(at[3]) << 24;
 }
 
+/// Whether a run-length segment (PS3.5 G.3) makes so many bytes, and ends then but for a byte that
+/// makes its length even.
+bool rleSegmentMakes(std::span<const std::uint8_t> segment, std::size_t wanted) {
+    std::size_t made = 0, at = 0;
+    while (made < wanted && at < segment.size()) {
+        const std::size_t control = segment[at];
+        if (control < 128)
+            made += control + 1, at += control + 2;
+        else if (control > 128)
+            made += 257 - control, at += 2;
+        else
+            ++at;
+    }
+    return made == wanted && at <= segment.size() && segment.size() - at <= 1;
+}
+
 /// An RLE frame starts with 16 numbers: how many segments, and where each begins (PS3.5 G.5).
-/// DCMTK's decoder reads out of bounds where they point beyond the frame.
-bool rleHeaderIsSound(std::span<const std::uint8_t> frame, std::size_t segments) {
+/// DCMTK's decoder reads out of bounds where they point beyond the frame, and fills up what is
+/// missing.
+bool rleFrameIsSound(std::span<const std::uint8_t> frame, std::size_t segments,
+                     std::size_t pixels) {
     constexpr std::size_t headerBytes = 64;
     if (frame.size() < headerBytes) return false;
     auto number = [&](std::size_t n) { return littleEndian32(frame.data() + 4 * n); };
@@ -36,6 +59,10 @@ bool rleHeaderIsSound(std::span<const std::uint8_t> frame, std::size_t segments)
     for (std::size_t n = 1; n <= segments; ++n) {
         if (number(n) < least || number(n) > frame.size()) return false;
         least = number(n);
+    }
+    for (std::size_t n = 1; n <= segments; ++n) {
+        const std::size_t end = n < segments ? number(n + 1) : frame.size();
+        if (!rleSegmentMakes(frame.subspan(number(n), end - number(n)), pixels)) return false;
     }
     return true;
 }
@@ -76,6 +103,13 @@ public:
                             " of " + std::to_string(needed) + " bytes")
                                .c_str());
         }
+        // Some writers pad, but not by a row.
+        if (pixelData_->getLength() >= needed + std::size_t(image_.matrix.x) * cellBytes()) {
+            return damaged(("its pixel data holds " + std::to_string(pixelData_->getLength()) +
+                            " bytes, where its rows, columns and bits ask for " +
+                            std::to_string(needed))
+                               .c_str());
+        }
         return {};
     }
 
@@ -98,16 +132,20 @@ public:
             if (!range || range->last - range->first != 1)
                 return damaged("its compressed frames cannot be told apart");
             const auto bytes = TRY(frameBytes(frame));
-            if (!rleHeaderIsSound(bytes, cellBytes()))
-                return damaged("its run-length segments lie outside the frame");
+            if (!rleFrameIsSound(bytes, cellBytes(), pixels()))
+                return damaged("its run-length segments are damaged, or of another size");
             nextFragment_ = Uint32(range->first);
         }
+        if (fragments_ && isJpeg(syntax_)) TRY(checkJpeg(frame));
         cells_.resize(pixels() + 1);
         OFString colorModel;
+        const std::size_t warned = libraryWarnings();
         const OFCondition condition = pixelData_->getUncompressedFrame(
             dataset_, Uint32(frame), nextFragment_, cells_.data(),
             Uint32(cells_.size() * sizeof(std::uint16_t)), colorModel, &cache_);
         if (condition.bad()) return damaged(condition.text());
+        // Its decoders go on where they can, and warn.
+        if (libraryWarnings() != warned) return damaged("its compressed data is damaged");
         const HuTable& hu = table(image_.format, header.rescale);
         if (cellBytes() == 1) {
             const auto* bytes = reinterpret_cast<const std::uint8_t*>(cells_.data());
@@ -187,15 +225,37 @@ private:
         return bytes;
     }
 
+    /// DCMTK decodes a stream of another size or depth than the file states into cells of those.
+    Result<void> checkJpeg(int frame) {
+        const auto bytes = TRY(frameBytes(frame));
+        const auto header = jpegHeader(bytes);
+        if (!header) return damaged("its JPEG stream has no frame header");
+        const StoredFormat& format = image_.format;
+        const bool isWideEnough = (header->precision > 8) == (format.bitsAllocated == 16) &&
+                                  (!format.isSigned || header->precision >= format.bitsStored);
+        if (header->components == 1 && header->size == image_.matrix && isWideEnough) return {};
+        return damaged(("its JPEG stream is of " + std::to_string(header->size.x) + " columns, " +
+                        std::to_string(header->size.y) + " rows and " +
+                        std::to_string(header->precision) + " bits, the file of " +
+                        std::to_string(image_.matrix.x) + ", " + std::to_string(image_.matrix.y) +
+                        " and " + std::to_string(format.bitsStored))
+                           .c_str());
+    }
+
     Result<void> readJpeg2000(int frame, const Rescale& rescale) {
         const auto bytes = TRY(frameBytes(frame));
         const auto decoded = TRY(decodeJpeg2000(bytes, image_.matrix, place_));
         // The codestream's own precision rules: some writers' Bits Stored disagrees with it. Where
-        // the signs disagree, the values are the data set's, written as if of the other kind.
+        // the signs disagree, the values are the data set's, written as if of the other kind: whole
+        // cells where these are wider.
         StoredFormat format = image_.format;
-        format.bitsAllocated = 16;
-        format.bitsStored = decoded.precision;
-        format.highBit = decoded.precision - 1;
+        const bool areCells = format.isSigned && !decoded.isSigned && format.bitsAllocated == 16 &&
+                              decoded.precision > format.bitsStored;
+        if (!areCells) {
+            format.bitsAllocated = 16;
+            format.bitsStored = decoded.precision;
+            format.highBit = decoded.precision - 1;
+        }
         const HuTable& hu = table(format, rescale);
         for (std::size_t n = 0; n < hu_.size(); ++n)
             hu_[n] = hu[decoded.cells[n]];

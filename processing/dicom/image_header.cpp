@@ -3,8 +3,10 @@
 #include "dicom/dicom_library.h"
 
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dctk.h>
@@ -47,13 +49,37 @@ std::string printable(std::string string) {
     return string;
 }
 
+/// Of a text the whole text must be a number: DCMTK reads "1,5" as 1.
+std::optional<double> numberIn(std::string_view text) {
+    constexpr std::string_view padding(" \0", 2);
+    const std::size_t begin = text.find_first_not_of(padding);
+    if (begin == std::string_view::npos) return std::nullopt;
+    text = text.substr(begin, text.find_last_not_of(padding) + 1 - begin);
+    if (text.starts_with('+')) text.remove_prefix(1);
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
+std::optional<double> numberAt(DcmItem& item, const DcmTagKey& tag, unsigned long n) {
+    DcmElement* element = nullptr;
+    if (item.findAndGetElement(tag, element).bad() || !element) return std::nullopt;
+    std::optional<double> value;
+    Float64 stored = 0;
+    if (DcmVR(element->getVR()).isaString())
+        value = numberIn(text(item, tag, n));
+    else if (element->getFloat64(stored, n).good())
+        value = stored;
+    return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 template <std::size_t Count>
 bool numbers(DcmItem& item, const DcmTagKey& tag, std::array<double, Count>& values) {
     for (std::size_t n = 0; n < Count; ++n) {
-        Float64 value = 0;
-        if (item.findAndGetFloat64(tag, value, static_cast<unsigned long>(n)).bad()) return false;
-        if (!std::isfinite(value)) return false;
-        values[n] = value;
+        const auto value = numberAt(item, tag, static_cast<unsigned long>(n));
+        if (!value) return false;
+        values[n] = *value;
     }
     return true;
 }
@@ -113,6 +139,9 @@ Result<FrameHeader> readFrame(const FrameAttributes& attributes, const std::stri
     if (!position || !numbers(*position, DCM_ImagePositionPatient, p))
         return missing("Image Position (Patient)");
     frame.positionMm = {p[0], p[1], p[2]};
+    constexpr double farthestMm = 1e6;
+    if (glm::any(glm::greaterThan(glm::abs(frame.positionMm), glm::dvec3(farthestMm))))
+        return missing("Image Position (Patient): it is more than a kilometre away");
 
     DcmItem* orientation = attributes.group(DCM_PlaneOrientationSequence);
     std::array<double, 6> o{};
@@ -162,7 +191,14 @@ Result<StoredFormat> readFormat(DcmItem& dataset, const std::string& place) {
     format.bitsAllocated = whole(dataset, DCM_BitsAllocated).value_or(0);
     format.bitsStored = whole(dataset, DCM_BitsStored).value_or(format.bitsAllocated);
     format.highBit = whole(dataset, DCM_HighBit).value_or(format.bitsStored - 1);
-    format.isSigned = whole(dataset, DCM_PixelRepresentation).value_or(0) == 1;
+    const int representation = whole(dataset, DCM_PixelRepresentation).value_or(-1);
+    if (representation != 0 && representation != 1) {
+        return fail(ErrorKind::badInput,
+                    "the CT image does not say whether its pixels have signs: it has no valid "
+                    "Pixel Representation",
+                    place);
+    }
+    format.isSigned = representation == 1;
     if (!format.valid()) {
         return unsupported("the CT image's pixels have " + std::to_string(format.bitsAllocated) +
                            " bits allocated, " + std::to_string(format.bitsStored) +
@@ -210,9 +246,12 @@ Result<std::vector<FrameHeader>> readFrames(DcmItem& dataset, bool enhanced,
     dataset.findAndGetSequenceItem(DCM_SharedFunctionalGroupsSequence, shared, 0);
     DcmSequenceOfItems* perFrame = nullptr;
     dataset.findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, perFrame);
-    if (!perFrame || perFrame->card() < static_cast<unsigned long>(count)) {
+    const unsigned long groups = perFrame ? perFrame->card() : 0;
+    if (groups != static_cast<unsigned long>(count)) {
         return fail(ErrorKind::badInput,
-                    "the enhanced CT image has fewer functional groups than frames", place);
+                    "the enhanced CT image has " + std::to_string(groups) +
+                        " functional groups of " + std::to_string(count) + " frames",
+                    place);
     }
     DcmObject* item = nullptr;
     for (int n = 0; n < count; ++n) {
@@ -240,6 +279,7 @@ Result<void> readImage(DcmItem& dataset, bool enhanced, const std::string& place
     image.description = printable(text(dataset, DCM_SeriesDescription));
     image.position = patientPosition(text(dataset, DCM_PatientPosition));
     image.localizer = text(dataset, DCM_ImageType, 2) == "LOCALIZER";
+    image.isLossy = text(dataset, DCM_LossyImageCompression) == "01";
     if (image.seriesUid.empty())
         return fail(ErrorKind::badInput, "the CT image has no Series Instance UID", place);
     const int columns = whole(dataset, DCM_Columns).value_or(0);

@@ -34,6 +34,7 @@ struct ImageHeader {
     std::string description;           ///< printable ASCII
     PatientPosition position = PatientPosition::unknown;
     bool localizer = false;  ///< a scout view: no part of a volume
+    bool isLossy = false;    ///< its pixels have been compressed with loss
     glm::ivec2 matrix{0};    ///< columns, rows
     StoredFormat format;
     std::vector<FrameHeader> frames;  ///< one for a classic CT image

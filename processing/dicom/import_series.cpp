@@ -156,6 +156,28 @@ Result<void> decodeSlices(const Series& series, const SliceStack& stack,
     return {};
 }
 
+/// Slices that are left out as copies of others must be so.
+Result<void> checkCopies(const Series& series, const SliceStack& stack,
+                         const std::vector<PlacedFrame>& frames) {
+    const auto pixelsOf = [&](std::size_t slice, std::vector<std::int16_t>& pixels) {
+        const PlacedFrame& frame = frames[slice];
+        return decodeFrames(
+            series.images[frame.image], frame.frame, frame.frame + 1,
+            [&](int, std::span<const std::int16_t> hu) { pixels.assign(hu.begin(), hu.end()); });
+    };
+    std::vector<std::int16_t> kept, copy;
+    for (const SliceStack::Copy& each : stack.copies) {
+        TRY(pixelsOf(each.kept, kept));
+        TRY(pixelsOf(each.slice, copy));
+        if (copy == kept) continue;
+        return fail(ErrorKind::badInput,
+                    "it has place and Instance UID of " +
+                        series.images[frames[each.kept].image].file.string() + ", but other pixels",
+                    series.images[frames[each.slice].image].file.string());
+    }
+    return {};
+}
+
 }  // namespace
 
 Result<std::vector<SeriesSummary>> listSeries(const std::filesystem::path& path) {
@@ -186,6 +208,7 @@ Result<ImportedSeries> importSeries(const std::filesystem::path& path,
     const std::vector<Slice> slices = slicesOf(series, frames);
     auto stack = TRY(stackSlices(slices));
 
+    TRY(checkCopies(series, stack, frames));
     SourceSeries source = sourceOf(series, slices, frames, stack);
     Grid grid = stack.grid;
     grid.size.z = int(stack.order.size());
@@ -199,7 +222,8 @@ Result<ImportedSeries> importSeries(const std::filesystem::path& path,
     result.scan.position = series.summary.position;
     result.summary = series.summary;
     result.source = std::move(source);
-    result.notes = std::move(stack.notes);
+    result.notes = std::move(series.notes);
+    std::ranges::move(stack.notes, std::back_inserter(result.notes));
     if (series.localizers > 0) {
         result.notes.push_back("left out " + std::to_string(series.localizers) +
                                " scout views of the series");

@@ -58,7 +58,7 @@ struct Column {
     glm::dvec3 normal;
     std::vector<std::size_t> order;
     std::vector<double> depthMm;
-    int copies = 0;
+    std::vector<SliceStack::Copy> copies;
 
     double gap(std::size_t k) const { return depthMm[k + 1] - depthMm[k]; }
     std::size_t gaps() const { return order.size() - 1; }
@@ -79,7 +79,7 @@ Result<Column> sortAlongNormal(const std::vector<Slice>& slices) {
         if (!column.order.empty() && depth[n] - column.depthMm.back() < samePlaceMm) {
             const Slice& kept = slices[column.order.back()];
             if (!kept.instanceUid.empty() && kept.instanceUid == slices[n].instanceUid) {
-                ++column.copies;
+                column.copies.push_back({n, column.order.back()});
                 continue;
             }
             return fail(ErrorKind::badInput,
@@ -135,6 +135,30 @@ Result<void> checkHoles(const std::vector<Slice>& slices, const Column& column) 
                             " away; at most " + millimetres(widestGapMm) + " is read",
                         below);
         }
+    }
+    return {};
+}
+
+/// A slice between two that are as far apart as slices are elsewhere is another's: a spacing that
+/// changes does not do so for one slice.
+Result<void> checkStrays(const std::vector<Slice>& slices, const Column& column) {
+    if (column.gaps() < 4) return {};
+    std::vector<double> gaps(column.gaps());
+    for (std::size_t k = 0; k < gaps.size(); ++k)
+        gaps[k] = column.gap(k);
+    const double usual = median(gaps);
+    const auto isUsual = [&](double mm) { return std::abs(mm - usual) < 0.1 * usual; };
+    for (std::size_t k = 0; k + 1 < gaps.size(); ++k) {
+        const bool between = isUsual(gaps[k] + gaps[k + 1]);
+        const bool before = k == 0 || isUsual(gaps[k - 1]);
+        const bool after = k + 2 == gaps.size() || isUsual(gaps[k + 2]);
+        if (!between || !before || !after) continue;
+        const bool nearerBelow = gaps[k] < gaps[k + 1];
+        return fail(ErrorKind::badInput,
+                    "it lies " + millimetres(std::min(gaps[k], gaps[k + 1])) + " from " +
+                        slices[column.order[nearerBelow ? k : k + 2]].name + ", where slices are " +
+                        millimetres(usual) + " apart: one of them is another's",
+                    slices[column.order[k + 1]].name);
     }
     return {};
 }
@@ -233,13 +257,15 @@ Result<SliceStack> stackSlices(const std::vector<Slice>& slices) {
     if (slices.empty()) return fail(ErrorKind::noResult, "the series holds no slice");
     TRY(checkAlike(slices));
     auto column = TRY(sortAlongNormal(slices));
+    TRY(checkStrays(slices, column));
     TRY(checkHoles(slices, column));
 
     const Slice& first = slices[column.order[0]];
     SliceStack stack;
     stack.order = column.order;
-    if (column.copies > 0) {
-        stack.notes.push_back("left out " + std::to_string(column.copies) +
+    stack.copies = column.copies;
+    if (!column.copies.empty()) {
+        stack.notes.push_back("left out " + std::to_string(column.copies.size()) +
                               " copies of slices that are there already");
     }
     stack.grid.size = glm::ivec3(first.matrix, 1);

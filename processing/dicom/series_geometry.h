@@ -27,6 +27,11 @@ struct Slice {
 /// The volume that the slices make, and how each gets there.
 struct SliceStack {
     std::vector<std::size_t> order;  ///< indices of the slices kept, along the normal row × column
+    /// Of slices left out as copies the slice that was kept.
+    struct Copy {
+        std::size_t slice = 0, kept = 0;
+    };
+    std::vector<Copy> copies;
     /// Where the stack is sheared (gantry tilt): the pixel (i, j) of slice order[k] belongs at
     /// pixel (i, j) + shiftPixels[k] of the result. Empty where the slices already sit squarely.
     std::vector<glm::dvec2> shiftPixels;
@@ -40,9 +45,9 @@ struct SliceStack {
 /// Stacks at least one slice, in any order. Fails, naming the slices, where orientation, matrix or
 /// pixel spacing differ, two different slices share a position, a slice is missing (a gap 1.5
 /// times both its neighbours, or 1.5 times the usual one and alone or with one neighbour as wide),
-/// gaps exceed 10 mm, or slices are displaced sideways other than by a tilt. Gaps that vary without
-/// a hole are resampled to the smallest, or to half the median if that is more. Deterministic; O(n
-/// log n).
+/// a slice stands between two that are as far apart as the others are, gaps exceed 10 mm, or slices
+/// are displaced sideways other than by a tilt. Gaps that vary without a hole are resampled to the
+/// smallest, or to half the median if that is more. Deterministic; O(n log n).
 Result<SliceStack> stackSlices(const std::vector<Slice>& slices);
 
 }  // namespace haustra::dicom

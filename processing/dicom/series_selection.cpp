@@ -1,7 +1,10 @@
 #include "dicom/series_selection.h"
 
+#include "core/files_below.h"
+
 #include <algorithm>
 #include <map>
+#include <set>
 #include <thread>
 
 namespace haustra::dicom {
@@ -9,34 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t mostFiles = 100'000;
 constexpr int fewestSlicesOfAVolume = 16;
-
-Result<std::vector<fs::path>> filesBelow(const fs::path& path) {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status))
-        return fail(ErrorKind::notFound, "there is no such file or folder", path.string());
-    if (fs::is_regular_file(status)) return std::vector<fs::path>{path};
-    if (!fs::is_directory(status))
-        return fail(ErrorKind::badInput, "this is neither a file nor a folder", path.string());
-    std::vector<fs::path> files;
-    fs::recursive_directory_iterator walk(path, error), end;
-    for (; !error && walk != end; walk.increment(error)) {
-        std::error_code unknown;
-        if (!walk->is_regular_file(unknown)) continue;
-        if (files.size() == mostFiles) {
-            return fail(ErrorKind::unsupported,
-                        "the folder holds more than " + std::to_string(mostFiles) + " files",
-                        path.string());
-        }
-        files.push_back(walk->path());
-    }
-    if (error)
-        return fail(ErrorKind::io, "the folder cannot be read: " + error.message(), path.string());
-    std::sort(files.begin(), files.end());  // the order of the messages and of equal slices
-    return files;
-}
 
 std::string line(const SeriesSummary& series) {
     return series.seriesUid + " (" + std::to_string(series.images) + " images of " +
@@ -64,6 +40,56 @@ void summarise(Series& series) {
     summary.description = first.description;
     summary.matrix = first.matrix;
     summary.position = first.position;
+}
+
+/// Whether a file that is no DICOM is named as the series' files beside it are, so that it may have
+/// been one: of their ending, or, where they have none, empty.
+bool mayHaveBeenOfIt(const fs::path& stranger, const Series& series) {
+    if (stranger.filename().string().starts_with('.')) return false;  // another program's
+    const bool besideAlike = std::ranges::any_of(series.images, [&](const ImageHeader& image) {
+        return image.file.parent_path() == stranger.parent_path() &&
+               image.file.extension() == stranger.extension();
+    });
+    std::error_code unknown;
+    return besideAlike && (!stranger.extension().empty() || fs::file_size(stranger, unknown) == 0);
+}
+
+/// Fails where a file of the series may be lost, or images are not of one examination.
+Result<void> checkWhole(const Series& series, const std::vector<fs::path>& strangers) {
+    for (const fs::path& stranger : strangers)
+        if (mayHaveBeenOfIt(stranger, series))
+            return fail(ErrorKind::badInput,
+                        "this is not a DICOM file, though it is named as those of the series "
+                        "beside it are: it may be a slice that has lost its content",
+                        stranger.string());
+    const ImageHeader& first = series.images.front();
+    for (const ImageHeader& image : series.images) {
+        const char* differs = image.studyUid != first.studyUid   ? "study"
+                              : image.position != first.position ? "patient position"
+                                                                 : nullptr;
+        if (differs)
+            return fail(ErrorKind::badInput,
+                        std::string("it is of the series, but of another ") + differs + " than " +
+                            first.file.string(),
+                        image.file.string());
+    }
+    return {};
+}
+
+/// What a reader should know of a series that is read all the same.
+std::vector<std::string> notesOn(const Series& series) {
+    std::vector<std::string> notes;
+    std::set<std::string> frames;
+    for (const ImageHeader& image : series.images)
+        frames.insert(image.frameOfReferenceUid);
+    if (frames.size() > 1)
+        notes.push_back("warning: the images name " + std::to_string(frames.size()) +
+                        " frames of reference, and were taken to lie in one");
+    const auto lossy = std::ranges::count_if(series.images, &ImageHeader::isLossy);
+    if (lossy > 0)
+        notes.push_back("the pixels of " + std::to_string(lossy) +
+                        " images were compressed with loss");
+    return notes;
 }
 
 }  // namespace
@@ -95,7 +121,10 @@ Result<FoundSeries> findSeries(const fs::path& path, int threads, const Progress
                 found.others.push_back(std::move(file.reason));
                 break;
             case DicomFile::Kind::notDicom:
-                if (files.size() == 1) found.others.push_back(std::move(file.reason));
+                if (files.size() == 1)
+                    found.others.push_back(std::move(file.reason));
+                else
+                    found.strangers.emplace_back(file.reason.place);
                 break;
         }
     }
@@ -153,6 +182,8 @@ Result<Series> chooseSeries(FoundSeries found, const std::string& seriesUid, con
     if (!found.damaged.empty()) return tl::make_unexpected(found.damaged.front());
     if (chosen.images.empty())
         return fail(ErrorKind::noResult, "the series holds only scout views", path.string());
+    TRY(checkWhole(chosen, found.strangers));
+    chosen.notes = notesOn(chosen);
     return std::move(chosen);
 }
 

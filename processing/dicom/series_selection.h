@@ -16,8 +16,9 @@ namespace haustra::dicom {
 struct Series {
     SeriesSummary summary;
     std::vector<ImageHeader> images;
-    int localizers = 0;          ///< scout views left out
-    std::vector<Error> damaged;  ///< files of this series that cannot be read
+    int localizers = 0;              ///< scout views left out
+    std::vector<Error> damaged;      ///< files of this series that cannot be read
+    std::vector<std::string> notes;  ///< for a person; of a series that was chosen
 };
 
 struct FoundSeries {
@@ -26,16 +27,18 @@ struct FoundSeries {
     std::vector<Error> damaged;
     /// Why a single file that was asked for, or the first DICOM object found, is no CT image.
     std::vector<Error> others;
+    /// Files that are not DICOM, where there are others.
+    std::vector<std::filesystem::path> strangers;
 };
 
-/// Reads the headers of all files at or below `path`, in parallel. Files that are not DICOM are
-/// passed over. Fails where the path cannot be read or holds more than 100,000 files.
+/// Reads the headers of all files at or below `path`, in parallel. Fails as filesBelow does.
 Result<FoundSeries> findSeries(const std::filesystem::path& path, int threads,
                                const Progress& progress);
 
 /// The series with `seriesUid`; where that is empty the only one, or the only one of at least 16
-/// images. Fails where there is none, several (listing them), or the chosen one, or a series
-/// unknown, has a damaged file.
+/// images. Fails where there is none, several (listing them), where the chosen one, or a series
+/// unknown, has a damaged file, where a file beside its own that is named alike is no DICOM, and
+/// where its images are of several studies or patient positions.
 Result<Series> chooseSeries(FoundSeries found, const std::string& seriesUid,
                             const std::filesystem::path& path);
 

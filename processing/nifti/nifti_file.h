@@ -13,15 +13,19 @@ namespace haustra::nifti {
 
 /// Reads a 3-D image (further axes of one sample are allowed) of any integer or real type in either
 /// byte order, plain or gzip whatever its name, applying scl_slope and scl_inter. Values outside
-/// T's range are clamped, fractions rounded to nearest, NaN is 0 in an integer type. Affine: sform,
-/// else qform, else the spacing alone; micrometres and metres become millimetres. T is
-/// std::int16_t, std::uint8_t or float.
+/// T's range are clamped, fractions rounded to nearest, NaN is `notANumber` in an integer type.
+/// Affine: sform, else qform, else the spacing alone; micrometres and metres become millimetres. T
+/// is std::int16_t, std::uint8_t or float.
 ///
 /// Fails, naming the file, where it is not NIfTI-1 in one file, is of another type (complex,
 /// colour), its grid fails checkGrid, or it is truncated or damaged. Memory: the volume and a few
 /// MB, taken only when the file is large enough to fill it. Thread-safe.
 template <class T>
-Result<Volume<T>> readNifti(const std::filesystem::path& file);
+Result<Volume<T>> readNifti(const std::filesystem::path& file, T notANumber = T(0));
+
+/// Whether the file says how its axes lie in the patient (sform or qform). Fails as readNifti does,
+/// but for the values, which are not read.
+Result<bool> saysHowItLies(const std::filesystem::path& file);
 
 /// Writes sform and, where the axes are orthogonal, qform, in single precision as the format has
 /// it; compressed for speed on all cores where the name ends in .gz. Written under a temporary

@@ -113,11 +113,11 @@ Result<void> skipToData(MaybeGzipFile& stream, const nifti_1_header& header,
 // ------------------------------------------------------------------------------------ the values
 
 template <class T>
-T converted(double value) {
+T converted(double value, T notANumber) {
     if constexpr (std::is_floating_point_v<T>) {
         return T(value);
     } else {
-        if (std::isnan(value)) return T(0);
+        if (std::isnan(value)) return notANumber;
         constexpr double low = std::numeric_limits<T>::min(), high = std::numeric_limits<T>::max();
         return T(std::lround(std::min(std::max(value, low), high)));
     }
@@ -139,7 +139,7 @@ Scaling scalingOf(const nifti_1_header& header) {
 
 template <class Stored, class T>
 Result<void> readValues(MaybeGzipFile& stream, bool swapped, const Scaling& scaling,
-                        std::span<T> values) {
+                        std::span<T> values, T notANumber) {
     std::vector<Stored> stored(std::min(voxelsAtOnce, values.size()));
     for (std::size_t at = 0; at < values.size(); at += voxelsAtOnce) {
         const std::size_t count = std::min(voxelsAtOnce, values.size() - at);
@@ -152,7 +152,8 @@ Result<void> readValues(MaybeGzipFile& stream, bool swapped, const Scaling& scal
         TRY(stream.read(std::as_writable_bytes(std::span(stored).first(count))));
         if (swapped && sizeof(Stored) > 1) nifti_swap_Nbytes(count, sizeof(Stored), stored.data());
         for (std::size_t n = 0; n < count; ++n)
-            values[at + n] = converted<T>(scaling.slope * double(stored[n]) + scaling.intercept);
+            values[at + n] =
+                converted<T>(scaling.slope * double(stored[n]) + scaling.intercept, notANumber);
     }
     return {};
 }
@@ -166,9 +167,10 @@ tl::unexpected<Error> unreadType(short datatype, const std::string& place) {
 
 template <class T>
 Result<void> readValuesOf(short datatype, MaybeGzipFile& stream, bool swapped,
-                          const Scaling& scaling, std::span<T> values, const std::string& place) {
+                          const Scaling& scaling, std::span<T> values, T notANumber,
+                          const std::string& place) {
     auto as = [&]<class Stored>(Stored) {
-        return readValues<Stored>(stream, swapped, scaling, values);
+        return readValues<Stored>(stream, swapped, scaling, values, notANumber);
     };
     switch (datatype) {
         case NIFTI_TYPE_UINT8:
@@ -224,15 +226,20 @@ Result<OpenImage> openImage(const std::filesystem::path& file) {
 }  // namespace
 
 template <class T>
-Result<Volume<T>> readNifti(const std::filesystem::path& file) try {
+Result<Volume<T>> readNifti(const std::filesystem::path& file, T notANumber) try {
     auto image = TRY(openImage(file));
     Volume<T> volume(image.grid);
     TRY(readValuesOf<T>(image.header.datatype, image.stream, image.swapped, scalingOf(image.header),
-                        volume.writable(), file.string()));
+                        volume.writable(), notANumber, file.string()));
     TRY(image.stream.finish());
     return volume;
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
+}
+
+Result<bool> saysHowItLies(const std::filesystem::path& file) {
+    const auto image = TRY(openImage(file));
+    return image.header.sform_code > 0 || image.header.qform_code > 0;
 }
 
 Result<ColorImage> readColorNifti(const std::filesystem::path& file) try {
@@ -262,8 +269,8 @@ Result<ColorImage> readColorNifti(const std::filesystem::path& file) try {
     return fail(ErrorKind::io, "there is not enough memory for the volume", file.string());
 }
 
-template Result<Volume<std::uint8_t>> readNifti(const std::filesystem::path&);
-template Result<Volume<std::int16_t>> readNifti(const std::filesystem::path&);
-template Result<Volume<float>> readNifti(const std::filesystem::path&);
+template Result<Volume<std::uint8_t>> readNifti(const std::filesystem::path&, std::uint8_t);
+template Result<Volume<std::int16_t>> readNifti(const std::filesystem::path&, std::int16_t);
+template Result<Volume<float>> readNifti(const std::filesystem::path&, float);
 
 }  // namespace haustra::nifti

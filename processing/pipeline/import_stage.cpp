@@ -10,9 +10,9 @@ namespace {
 
 using store::Attributes;
 
-// Raise it whenever the scan changes for the same files. A case that lacks a product which the
+// Raise one whenever the scan changes for the same files. A case that lacks a product which the
 // import has come to make gets it as the series is read again, and keeps all else that it has.
-constexpr int importVersion = 2;
+constexpr int dicomVersion = 2, niftiVersion = 3;
 
 }  // namespace
 
@@ -20,12 +20,14 @@ Result<ProductKey> importScan(Preparation& preparation) {
     const StageMeter meter;
     const PrepareOptions& options = preparation.options();
     const auto source = TRY(sourceKey(options.series, options.threads));
-    const ProductKey key = store::makeKey("import", importVersion, options.seriesUid, {source});
+    const bool isNifti = isNiftiFile(options.series);
+    const ProductKey key = store::makeKey("import", isNifti ? niftiVersion : dicomVersion,
+                                          options.seriesUid, {source});
     TRY(identifyScan(options.series, options.seriesUid, source, options.threads)
             .and_then(
                 [&](const store::ScanIdentity& scan) { return preparation.bind(scan, key); }));
     std::vector<std::string> without;
-    if (isNiftiFile(options.series)) without = {store::product::source};
+    if (isNifti) without = {store::product::source};
     StageCase stage = preparation.open("import", key, without);
     return preparation.run(stage, meter, [&](const Progress& progress) -> Result<void> {
         const auto input =

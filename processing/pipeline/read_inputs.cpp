@@ -1,6 +1,7 @@
 #include "pipeline/read_inputs.h"
 
 #include "dicom/import_series.h"
+#include "dicom/stored_values.h"
 #include "nifti/nifti_file.h"
 #include "pipeline/axial_order.h"
 
@@ -86,8 +87,21 @@ Result<ScanInput> readScan(const std::filesystem::path& series, const std::strin
         return fail(ErrorKind::badInput, "a NIfTI file has no series to choose from",
                     series.string());
     }
-    auto volume = TRY(nifti::readNifti<std::int16_t>(series));
-    return inAxialOrder({{std::move(volume), PatientPosition::unknown}, 1, {}}, threads);
+    // What is not a number lies outside the field of view, as in DICOM what is padded.
+    auto volume = TRY(nifti::readNifti<std::int16_t>(series, dicom::paddingHu));
+    if (!volume.grid().hasRightAngles())
+        return fail(ErrorKind::unsupported,
+                    "its voxel axes are not at right angles, as of a tilted scan that was not "
+                    "squared up; prepare the DICOM series, or resample it",
+                    series.string());
+    std::vector<std::string> notes;
+    if (!TRY(nifti::saysHowItLies(series)))
+        notes.push_back(
+            "warning: the file does not say how its axes lie in the patient; they were taken to "
+            "run to the right, the front and the head, so that left and right, and prone and "
+            "supine, may be wrong");
+    return inAxialOrder({{std::move(volume), PatientPosition::unknown}, 1, std::move(notes)},
+                        threads);
 }
 
 Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid,

@@ -1,38 +1,15 @@
 #include "pipeline/source_key.h"
 
+#include "core/files_below.h"
 #include "core/parallel.h"
 #include "store/sha256.h"
 
 #include <algorithm>
-#include <optional>
-#include <system_error>
 #include <vector>
 
 namespace haustra::pipeline {
-namespace {
-
-namespace fs = std::filesystem;
-
-Result<std::vector<fs::path>> filesOf(const fs::path& source) {
-    std::error_code error;
-    const fs::file_status status = fs::status(source, error);
-    if (!fs::exists(status)) {
-        return fail(ErrorKind::notFound, "there is no such file or folder", source.string());
-    }
-    if (!fs::is_directory(status)) return std::vector<fs::path>{source};
-    std::vector<fs::path> files;
-    for (auto at = fs::recursive_directory_iterator(source, error);
-         !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
-        if (at->is_regular_file(error)) files.push_back(at->path());
-    }
-    if (error) return fail(ErrorKind::io, "cannot list: " + error.message(), source.string());
-    return files;
-}
-
-}  // namespace
-
-Result<store::ProductKey> sourceKey(const fs::path& source, int threads) {
-    const auto files = TRY(filesOf(source));
+Result<store::ProductKey> sourceKey(const std::filesystem::path& source, int threads) {
+    const auto files = TRY(filesBelow(source));
     std::vector<Result<store::Digest>> digests(files.size());
     parallelFor(files.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)

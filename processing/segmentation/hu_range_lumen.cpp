@@ -168,13 +168,8 @@ Result<HuRangeLumen> findHuRangeLumen(const Volume<std::int16_t>& hu,
     };
     Volume<std::uint8_t> mask = contentOf(hu, options.contentHu, options.threads);
     if (options.openingMm > 0.0) {
-        const glm::dmat3 axes(grid.patientFromVoxel);
-        for (int a = 0; a < 3; ++a) {
-            const glm::dvec3 u = glm::normalize(axes[a]), v = glm::normalize(axes[(a + 1) % 3]);
-            if (!(std::abs(glm::dot(u, v)) <= 1e-3))
-                return refused(ErrorKind::badInput,
-                               "the scan's voxel axes are not at right angles");
-        }
+        if (!grid.hasRightAngles())
+            return refused(ErrorKind::badInput, "the scan's voxel axes are not at right angles");
         fillEnclosed(mask, options.threads);  // a speck of noise is no neck
         open(mask, options.openingMm, options.threads);
     }

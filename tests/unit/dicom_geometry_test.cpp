@@ -134,6 +134,19 @@ TEST(SliceStack, RefusesWhatCannotBeOneVolume) {
     EXPECT_FALSE(stackSlices({}));
 }
 
+TEST(SliceStack, NamesAStraySlice) {
+    for (const double at : {0.02, 0.3, 0.75, 1.05, 2.08}) {
+        auto depths = evenly(20, 2.1);
+        depths.push_back(9 * 2.1 + at);
+        expectRefused(slicesAt(depths), "slice20", "another's");
+    }
+    // A spacing that changes, and one step of another width, are none.
+    std::vector<double> depths{0, 2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24};
+    EXPECT_TRUE(stackSlices(slicesAt(depths)));
+    depths = {0, 2, 4, 6, 8, 9.2, 11.2, 13.2, 15.2, 17.2, 19.2};
+    EXPECT_TRUE(stackSlices(slicesAt(depths)));
+}
+
 TEST(SliceStack, LeavesOutCopiesOfASlice) {
     std::vector<Slice> slices = slicesAt(evenly(20, 1.0));
     slices.push_back(slices[4]);

@@ -219,13 +219,27 @@ TEST_F(Nifti, ConvertsEveryTypeInBothByteOrders) {
     expectConverted<std::uint64_t>(path, 1280, 12, 1, 0, 12);
 }
 
-TEST_F(Nifti, NotANumberIsZero) {
+TEST_F(Nifti, NotANumberIsZeroOrWhatIsAskedFor) {
     HandWritten file = oneVoxel(16);
     file.append(std::numeric_limits<float>::quiet_NaN());
     put(folder / "nan.nii", file.bytes());
     const auto read = readNifti<std::int16_t>(folder / "nan.nii");
     ASSERT_TRUE(read);
     EXPECT_EQ(read->at(0, 0, 0), 0);
+    const auto padded = readNifti<std::int16_t>(folder / "nan.nii", -1024);
+    ASSERT_TRUE(padded);
+    EXPECT_EQ(padded->at(0, 0, 0), -1024);
+}
+
+TEST_F(Nifti, TellsWhetherItSaysHowItLies) {
+    const fs::path file = folder / "lies.nii";
+    ASSERT_TRUE(writeNifti(file, pattern<std::int16_t>(obliqueGrid({3, 4, 5}))));
+    EXPECT_TRUE(nifti::saysHowItLies(file).value_or(false));
+    std::vector<char> bytes = bytesOf(file);
+    std::fill_n(bytes.begin() + 252, 4, '\0');  // neither qform nor sform
+    put(file, bytes);
+    EXPECT_FALSE(nifti::saysHowItLies(file).value_or(true));
+    EXPECT_FALSE(nifti::saysHowItLies(folder / "absent.nii"));
 }
 
 TEST_F(Nifti, ReadsARealMask) {

@@ -1,9 +1,11 @@
 // What prepare takes: masks beside a scan and alone, volumes in any order of axes; and what it
 // refuses.
 #include "pipeline/axial_order.h"
+#include "pipeline/read_inputs.h"
 #include "prepared_tube.h"
 
 #include <algorithm>
+#include <fstream>
 
 namespace haustra::pipeline {
 namespace {
@@ -20,6 +22,29 @@ TEST_F(PrepareInputs, AMaskStandsAlone) {
         EXPECT_FALSE(tube.find(product)) << product;
     EXPECT_TRUE(tube.find("centerline"));
     EXPECT_TRUE(meshTopology(tube.readMesh().value()).closed());
+}
+
+TEST_F(PrepareInputs, ANiftiFileThatLeansOrDoesNotSayHowItLies) {
+    const fs::path file = folder_ / "scan.nii";
+    Grid grid = axisAlignedGrid({6, 5, 4}, {1, 1, 1});
+    ASSERT_TRUE(nifti::writeNifti(file, Volume<std::int16_t>(grid, 40)));
+    const auto straight = readScan(file, "", 1, {});
+    ASSERT_TRUE(straight) << describe(straight.error());
+    EXPECT_TRUE(straight->notes.empty());
+    {
+        std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+        stream.seekp(252).write("\0\0\0\0", 4);  // neither qform nor sform
+    }
+    const auto unsaid = readScan(file, "", 1, {});
+    ASSERT_TRUE(unsaid) << describe(unsaid.error());
+    ASSERT_FALSE(unsaid->notes.empty());
+    EXPECT_TRUE(unsaid->notes[0].starts_with("warning: the file does not say how its axes lie"));
+    grid.patientFromVoxel[2] = {0.0, 0.2, 1.0, 0.0};
+    ASSERT_TRUE(nifti::writeNifti(file, Volume<std::int16_t>(grid, 40)));
+    const auto leaning = readScan(file, "", 1, {});
+    ASSERT_FALSE(leaning);
+    EXPECT_EQ(leaning.error().place, file.string());
+    EXPECT_NE(leaning.error().message.find("right angles"), std::string::npos);
 }
 
 // A lumen too short for a hole at each end: one clear error, and nothing before it is lost.
