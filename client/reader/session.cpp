@@ -200,7 +200,10 @@ void Session::handle(link::LinkUp up) {
 void Session::handle(const link::LinkDown& down) {
     if (phase_ == Phase::open) dropQuestionsOfLostLinks();
     failure_ = down.error;
-    if (!lastWords_.empty()) failure_.message = "the connection was lost: " + lastWords_;
+    // Why it stopped tells more than that it does not answer since, and less than why no further
+    // attempt is made.
+    if (!lastWords_.empty() && (linked_ || !down.final))
+        failure_.message = "the connection was lost: " + lastWords_;
     linked_ = false;
     forgetSeen();
     for (auto& [id, state] : viewports_)

@@ -86,6 +86,12 @@ void paintSymbol(QPainter& painter, Symbol symbol, const QColor& color) {
                 box(-0.3, y - 0.12, 0.85, y + 0.12);
             }
             break;
+        case Symbol::more:
+            for (const double x : {-0.55, 0.25}) {
+                stroke({x, -0.55}, {x + 0.5, 0.0});
+                stroke({x, 0.55}, {x + 0.5, 0.0});
+            }
+            break;
         case Symbol::enlarge:
             for (const double way : {1.0, -1.0}) {
                 stroke({0.25 * way, -0.25 * way}, {0.8 * way, -0.8 * way});

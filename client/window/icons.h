@@ -19,7 +19,8 @@ enum class Symbol {
     line,
     outline,
     cases,
-    enlarge
+    enlarge,
+    more
 };
 
 QIcon iconOf(Symbol symbol);

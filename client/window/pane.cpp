@@ -240,6 +240,7 @@ void Pane::showEvent(QShowEvent*) {
 void Pane::hideEvent(QHideEvent*) {
     reader().session().offScreen(int(view_));
     held_ = Qt::NoButton;
+    mouseAt_.reset();
     setKeyPointer(false);
     tellSizeSoon();
 }
@@ -258,6 +259,7 @@ void Pane::mousePressEvent(QMouseEvent* event) {
     if (held_ != Qt::NoButton) return;  // a second button does nothing
     held_ = event->button();
     pressedAt_ = lastAt_ = event->position();
+    mouseAt_ = event->globalPosition();
     isDrag_ = false;
     takesPictureOut_ = held_ == Qt::LeftButton && event->modifiers().testFlag(Qt::AltModifier);
     if (isOpen() && !takesPictureOut_) pressed(handOf(*event, lastAt_, held_));
@@ -266,6 +268,7 @@ void Pane::mousePressEvent(QMouseEvent* event) {
 
 void Pane::mouseMoveEvent(QMouseEvent* event) {
     const Hand hand = handOf(*event, lastAt_, held_);
+    mouseAt_ = event->globalPosition();
     if (held_ == Qt::NoButton) {
         lastAt_ = event->position();
         if (isOpen() && !reading_.pointsByKeys()) hovered(hand);
@@ -316,12 +319,16 @@ void Pane::wheelEvent(QWheelEvent* event) {
     reading_.changed();
 }
 
+// Panes that are arranged anew pass beneath a mouse that rests, and some are entered and never
+// left.
 void Pane::enterEvent(QEnterEvent*) {
     isHovered_ = true;
+    mouseAt_.reset();
     look();
 }
 void Pane::leaveEvent(QEvent*) {
     isHovered_ = false;
+    mouseAt_.reset();
     if (isOpen() && !reading_.pointsByKeys()) left();
     look();
 }
@@ -378,8 +385,9 @@ void Pane::keyPressEvent(QKeyEvent* event) {
 std::optional<QPointF> Pane::pointedAt() const {
     if (keyPointer_) return keyPointer_;
     // One place is pointed at: a mouse that rests elsewhere does not count.
-    if (!underMouse() || reading_.pointsByKeys()) return std::nullopt;
-    return lastAt_;
+    if (!underMouse() || !mouseAt_ || reading_.pointsByKeys()) return std::nullopt;
+    const QPointF at = mapFromGlobal(*mouseAt_);
+    return QRectF(rect()).contains(at) ? std::optional(at) : std::nullopt;
 }
 
 Hand Pane::keyHand(Qt::KeyboardModifiers modifiers, QPointF moved) const {

@@ -84,7 +84,8 @@ protected:
     reader::Reader& reader() { return reading_.reader(); }
     const reader::Reader& reader() const { return reading_.reader(); }
     bool isOpen() const { return reader().isOpen(); }
-    /// Where the mouse or the keys' pointer is, if it is in this pane.
+    /// Where the mouse or the keys' pointer is, if it is in this pane; a mouse, once it has moved
+    /// there.
     std::optional<QPointF> pointedAt() const;
     /// Of the picture that is shown, in the pane's pixels for which it was asked; before there is
     /// one, of the pane.
@@ -165,6 +166,7 @@ private:
     Shown shown_;
     std::uint64_t paintedCount_ = 0;  // of the view's pictures, when it was painted last
     QPointF pressedAt_, lastAt_;
+    std::optional<QPointF> mouseAt_;  // on the screen, where it last moved in the pane
     std::optional<QPointF> keyPointer_;
     bool keyDraws_ = false;
     QTimer sizeDue_;

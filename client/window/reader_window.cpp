@@ -10,9 +10,11 @@
 #include "window/flat_panes.h"
 #include "window/flight_bar.h"
 #include "window/help_pages.h"
+#include "window/icons.h"
 #include "window/language.h"
 #include "window/look_steps.h"
 #include "window/missed_panel.h"
+#include "window/narrow.h"
 #include "window/notices.h"
 #include "window/optics_panel.h"
 #include "window/overview_pane.h"
@@ -285,9 +287,9 @@ void ReaderWindow::makeHeader() {
     bold.setPointSizeF(bold.pointSizeF() * 1.15);
     caseName_->setFont(bold);
     caseName_->setTextFormat(Qt::PlainText);
-    about_ = new QLabel;
+    about_ = new NarrowLabel;
     notCleansed_ = new QLabel(tr("not cleansed"));
-    trust_ = new QToolButton;
+    trust_ = new NarrowButton;
     trust_->setPopupMode(QToolButton::InstantPopup);
     trust_->setToolButtonStyle(Qt::ToolButtonTextOnly);
     trust_->setAutoRaise(true);
@@ -320,6 +322,12 @@ void ReaderWindow::makeHeader() {
     for (QToolBar* bar : {trackBar_, flightBar_}) {
         bar->setMovable(false);
         bar->setContextMenuPolicy(Qt::PreventContextMenu);
+        // What shows the rest where a bar is too long: Qt's own arrows are black in any theme.
+        for (auto* more : bar->findChildren<QToolButton*>(QStringLiteral("qt_toolbar_ext_button"),
+                                                          Qt::FindDirectChildrenOnly)) {
+            more->setIcon(iconOf(Symbol::more));
+            more->setToolTip(tr("More"));
+        }
     }
     // Lines of this area are added from the bottom up.
     addToolBar(Qt::BottomToolBarArea, flightBar_);
@@ -335,6 +343,7 @@ void ReaderWindow::makeStatus() {
     statusBar()->setSizeGripEnabled(false);  // the window's frame has one
     statusBar()->addPermanentWidget(figures_);
     statusBar()->addPermanentWidget(server_);
+    server_->setContentsMargins(0, 0, 8, 0);
 }
 
 // ---- cases --------------------------------------------------------------------------------------
@@ -677,12 +686,13 @@ void ReaderWindow::look() {
     paint(notCleansed_, theme().bookmark);
     if (info.trust) {
         const auto& warnings = info.trust->warnings;
-        QString sure = tr("colon %1 % sure").arg(100.0 * info.trust->confidence, 0, 'f', 0);
+        const QString sure = tr("colon %1 % sure").arg(100.0 * info.trust->confidence, 0, 'f', 0);
+        QString words = sure;
         if (!warnings.empty())
-            sure +=
+            words +=
                 QStringLiteral(", ") + tr("%n place(s) to look at", nullptr, int(warnings.size()));
-        if (trust_->text() != sure) {
-            trust_->setText(sure);
+        if (trust_->accessibleName() != words) {
+            trust_->setWords(words, sure);
             QMenu* places = new QMenu(trust_);
             QStringList all;
             for (const std::string& warning : warnings) {

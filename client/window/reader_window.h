@@ -14,13 +14,13 @@
 class QLabel;
 class QMenu;
 class QMenuBar;
-class QToolButton;
 
 namespace haustra::window {
 
 class BookmarkPanel;
 class CaseList;
 class MissedPanel;
+class NarrowButton;
 class Notices;
 class Pane;
 
@@ -107,7 +107,7 @@ private:
     QMenuBar* menus_ = nullptr;
     QToolBar *trackBar_ = nullptr, *flightBar_ = nullptr;
     QLabel *caseName_ = nullptr, *about_ = nullptr, *notCleansed_ = nullptr;
-    QToolButton* trust_ = nullptr;
+    NarrowButton* trust_ = nullptr;
     QLabel *figures_ = nullptr, *server_ = nullptr;
     QMenu* layoutMenu_ = nullptr;
     QPointer<QDialog> help_, keys_;

@@ -146,7 +146,7 @@ void applyTheme(QApplication& application, const QString& name) {
             "QToolButton[autoRaise=\"true\"]:!checked { background: transparent; border-color: "
             "transparent; "
             "}"
-            "QToolButton#qt_toolbar_ext_button { background: %2; border-color: %6; }"
+            "QToolButton#qt_toolbar_ext_button { background: %2; border-color: %6; padding: 0; }"
             "QToolButton:focus { border: 2px solid %6; padding: 2px 4px; }"
             "QPushButton:focus { border: 2px solid %6; border-radius: 3px; padding: 3px 8px; }"
             "QCheckBox::indicator { width: 11px; height: 11px; border: 1px solid %9; "

@@ -227,6 +227,24 @@ TEST_F(ClientReaderOfARestart, AServerThatStopsWhileItOpensTheCaseIsTriedAgain) 
     EXPECT_TRUE(reader_->session().takeRefusals().empty());
 }
 
+class ClientReaderOfAnotherServer : public ClientReader {
+protected:
+    static Misbehaviour stopping() {
+        Misbehaviour misbehaviour;
+        misbehaviour.stopsWhileOpening = 1;
+        misbehaviour.anotherCertificateLater = true;
+        return misbehaviour;
+    }
+    ClientReaderOfAnotherServer() : ClientReader(stopping()) {}
+};
+
+TEST_F(ClientReaderOfAnotherServer, ACertificateThatChangedIsToldWhateverTheServerSaidLast) {
+    ASSERT_TRUE(runUntil([&] { return reader_->session().phase() == Phase::failed; }));
+    const std::string& told = reader_->session().failure().message;
+    EXPECT_NE(told.find("certificate"), std::string::npos) << told;
+    EXPECT_EQ(told.find("stops"), std::string::npos) << told;
+}
+
 TEST_F(ClientReaderOfAFragileServer, AQuestionThatEndsTheLinkTwiceIsNotAskedAgain) {
     Session& session = reader_->session();
     ASSERT_TRUE(runUntil([&] { return allAtRest(); }));

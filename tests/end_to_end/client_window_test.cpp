@@ -1515,6 +1515,29 @@ TEST_F(ClientWindow, WhatIsOnScreenIsToldAsLongAsItIs) {
     EXPECT_LT(toldIn(800), 100u) << "a window that is hidden shows nothing";
 }
 
+// Docks that are arranged anew pass beneath a mouse that rests: panes are entered, and never left.
+TEST_F(ClientWindow, WhatIsEnteredAtRestIsNotPointedAt) {
+    ASSERT_TRUE(settle());
+    Pane& strip = pane(View::flattened);
+    const auto toldMs = [&] {
+        QTest::qWait(400);
+        const std::uint64_t before = server_.onScreenMs(View::flattened);
+        QTest::qWait(800);
+        return server_.onScreenMs(View::flattened) - before;
+    };
+    const auto enter = [&] {
+        strip.setAttribute(Qt::WA_UnderMouse);
+        QEnterEvent event({50, 50}, {50, 50}, strip.mapToGlobal(QPointF(50, 50)));
+        QApplication::sendEvent(&strip, &event);
+    };
+    enter();
+    EXPECT_EQ(toldMs(), 0u);
+    moveTo(strip, {60, 60});
+    EXPECT_GT(toldMs(), 100u) << "the mouse has moved in it";
+    enter();
+    EXPECT_EQ(toldMs(), 0u);
+}
+
 TEST_F(ClientWindow, MissedPatchesAreListedAndGoneTo) {
     press(Qt::Key_U, Qt::ControlModifier);
     ASSERT_TRUE(waitFor([&] { return dock("missed")->isVisible(); }));

@@ -34,9 +34,10 @@ struct Viewport {
 
 struct FakeServer::Impl {
     Misbehaviour misbehaviour;
-    SelfSigned identity = makeSelfSigned();
+    SelfSigned identity = makeSelfSigned(), otherIdentity = makeSelfSigned();
     asio::io_context io;
-    asio::ssl::context tls{asio::ssl::context::tls_server};
+    asio::ssl::context tls{asio::ssl::context::tls_server},
+        otherTls{asio::ssl::context::tls_server};
     tcp::acceptor acceptor;
     std::atomic<bool> stopping{false}, down{false};
     std::atomic<int> connections{0}, bookmarkMessages{0}, seenForgotten{0}, detectionMessages{0};
@@ -51,9 +52,12 @@ struct FakeServer::Impl {
 
     Impl(Misbehaviour wrong, std::uint16_t port)
         : misbehaviour(wrong), acceptor(io, tcp::endpoint(asio::ip::address_v4::loopback(), port)) {
-        SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_3_VERSION);
-        SSL_CTX_use_certificate(tls.native_handle(), identity.certificate.get());
-        SSL_CTX_use_PrivateKey(tls.native_handle(), identity.key.get());
+        const auto identify = [](asio::ssl::context& as, const SelfSigned& by) {
+            SSL_CTX_set_min_proto_version(as.native_handle(), TLS1_3_VERSION);
+            SSL_CTX_use_certificate(as.native_handle(), by.certificate.get());
+            SSL_CTX_use_PrivateKey(as.native_handle(), by.key.get());
+        };
+        identify(tls, identity), identify(otherTls, otherIdentity);
         listener = std::thread([this] { listen(); });
     }
     ~Impl() {
@@ -76,11 +80,13 @@ struct FakeServer::Impl {
     }
 
     void listen() {
-        while (!stopping) {
-            auto stream = std::make_shared<Stream>(io, tls);
+        for (int accepted = 0; !stopping;) {
+            const bool other = misbehaviour.anotherCertificateLater && accepted > 0;
+            auto stream = std::make_shared<Stream>(io, other ? otherTls : tls);
             asio::error_code error;
             acceptor.accept(stream->lowest_layer(), error);
             if (stopping || error || down) continue;  // closed with the stream
+            ++accepted;
             {
                 const std::lock_guard lock(mutex);
                 streams.insert(stream);

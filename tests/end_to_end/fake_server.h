@@ -30,9 +30,10 @@ struct Misbehaviour {
     bool noStills = false;         ///< never answers a camera at rest
     int dropAfterBookmarks = 0;    ///< stores so many, then closes the socket before acknowledging
     bool truncateWelcome = false;
-    bool old = false;                    ///< knows nothing that a capability announces, and says so
-    bool anotherScanLater = false;       ///< after the first connection the case is of another scan
-    bool notFlattened = false;           ///< the case has no strip
+    bool old = false;               ///< knows nothing that a capability announces, and says so
+    bool anotherScanLater = false;  ///< after the first connection the case is of another scan
+    bool anotherCertificateLater = false;  ///< from the second connection on
+    bool notFlattened = false;             ///< the case has no strip
     bool silentAboutTheWall = false;     ///< never says where a place lies, nor how long a line is
     bool closesAtWallQuestions = false;  ///< closes the socket where it is asked about the wall
     int stopsWhileOpening = 0;           ///< says so to as many OpenCases, and closes the socket

@@ -2197,6 +2197,10 @@
         <source>on the right side</source>
         <translation>Rechtsseitenlage</translation>
     </message>
+    <message>
+        <source>More</source>
+        <translation>Mehr</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::Reading</name>

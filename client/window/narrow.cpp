@@ -1,0 +1,44 @@
+#include "window/narrow.h"
+
+#include <QPainter>
+
+namespace haustra::window {
+
+void NarrowLabel::paintEvent(QPaintEvent*) {
+    QPainter painter(this);
+    painter.setPen(palette().color(foregroundRole()));
+    painter.drawText(contentsRect(), Qt::AlignVCenter | Qt::TextSingleLine,
+                     fontMetrics().elidedText(text(), Qt::ElideRight, contentsRect().width()));
+}
+
+void NarrowButton::setWords(const QString& whole, const QString& least) {
+    if (whole == whole_ && least == least_) return;
+    whole_ = whole, least_ = least;
+    setAccessibleName(whole);
+    fit();
+    updateGeometry();
+}
+
+void NarrowButton::resizeEvent(QResizeEvent* event) {
+    QToolButton::resizeEvent(event);
+    fit();
+}
+
+// A button's own hint is of the words that it shows now.
+QSize NarrowButton::hintFor(const QString& words) const {
+    const QSize shown = QToolButton::sizeHint();
+    return {shown.width() + fontMetrics().horizontalAdvance(words) -
+                fontMetrics().horizontalAdvance(text()),
+            shown.height()};
+}
+
+void NarrowButton::fit() {
+    const int around = QToolButton::sizeHint().width() - fontMetrics().horizontalAdvance(text());
+    const int room = width() - around;
+    const QString words = fontMetrics().horizontalAdvance(whole_) <= room
+                              ? whole_
+                              : fontMetrics().elidedText(whole_, Qt::ElideRight, room);
+    if (words != text()) setText(words);
+}
+
+}  // namespace haustra::window
