@@ -30,13 +30,9 @@ constexpr double leastUnseenMm2 = 20.0;
 // Of the smoothed scan; the noisiest training phantoms have 15.
 constexpr double noisyHu = 25.0;
 
-bool hasStalk(const Candidate& candidate) {
-    return candidate.features[featureNumber("neck_ratio")] < stalkNeck;
-}
-
-const char* kindOf(const Candidate& candidate, double heightMm) {
-    const double ratio = heightMm / std::max(0.1, candidate.lesion.diameter.mm);
-    if (hasStalk(candidate) && ratio > stalkHeightRatio) return "pedunculated";
+const char* kindOf(const Lesion& lesion, double heightMm) {
+    const double ratio = heightMm / std::max(0.1, lesion.diameter.mm);
+    if (standsOnStalk(lesion) && ratio > stalkHeightRatio) return "pedunculated";
     return heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }
 
@@ -61,8 +57,8 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.wallMm = lesion.topMm;
     finding.diameterEndsMm = {evidence.samples.mesh.vertices[lesion.diameter.from],
                               evidence.samples.mesh.vertices[lesion.diameter.to]};
-    finding.heightMm = standingHeightMm(evidence, lesion, hasStalk(candidate), numbers);
-    finding.kind = kindOf(candidate, finding.heightMm);
+    finding.heightMm = standingHeightMm(evidence, lesion, numbers);
+    finding.kind = kindOf(lesion, finding.heightMm);
     const WallPlace along = evidence.alongColon->at(lesion.topMm);
     finding.arcMm = along.arcMm;
     finding.segment = segmentAt(colon, along.cameraMm);

@@ -12,7 +12,7 @@ namespace haustra::cad {
 
 /// Raised whenever detection makes something else of the same input and model: neither findings nor
 /// kept candidates of another version are taken for this one's.
-inline constexpr int detectionVersion = 24;
+inline constexpr int detectionVersion = 25;
 
 /// What of the whole is used; all by default. For comparisons, which leave out one after the other.
 struct Method {

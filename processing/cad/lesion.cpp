@@ -218,6 +218,12 @@ double widthAcross(const WallSamples& wall, std::span<const std::uint32_t> patch
 
 }  // namespace
 
+bool standsOnStalk(const Lesion& lesion) {
+    constexpr double neckShare = 0.7;
+    const double base = std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi);
+    return base < neckShare * std::sqrt(lesion.diameter.mm * lesion.widthMm);
+}
+
 std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t> patch,
                           double byMm, SampleNumbers& numbers) {
     numbers.clear();
@@ -297,10 +303,11 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const G
     measureAbove(spanned, patch.samples, lesion);
     lesion.rim = rimOf(wall, patch.samples, numbers);
     lesion.diameter = diameterOf(wall, patch.samples);
-    const double base = std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi);
-    if (base >= stalkNeck * lesion.diameter.mm)
-        lesion.diameter = diameterOf(wall, downToFoot(spanned, patch.samples, lesion));
     lesion.widthMm = widthAcross(wall, patch.samples, lesion);
+    if (!standsOnStalk(lesion)) {
+        lesion.diameter = diameterOf(wall, downToFoot(spanned, patch.samples, lesion));
+        lesion.widthMm = widthAcross(wall, patch.samples, lesion);
+    }
     lesion.voxels = voxelsWithin(lesion.body, grid);
     if (lesion.voxels.empty()) lesion.voxels = voxelsBeneath(evidence, patch, grid);
     lesion.patch = std::move(patch);

@@ -11,9 +11,6 @@
 
 namespace haustra::cad {
 
-/// A head whose base is narrower than this share of its width stands on a stalk.
-inline constexpr double stalkNeck = 0.7;
-
 /// A patch of the wall as a body that stands on a base. The base is a membrane, spanned from the
 /// patch's rim as a soap film: the wall as it would be without the body.
 struct Lesion {
@@ -39,6 +36,10 @@ struct Lesion {
     /// beneath the patch.
     std::vector<VoxelRun> voxels;
 };
+
+/// Whether it is a head on a stalk: its base is narrower than 0.7 of it, both as discs of the same
+/// area, so that what is long and low has none.
+bool standsOnStalk(const Lesion& lesion);
 
 /// Some samples, numbered from 0 in the order in which they were added. Emptied at no cost, so that
 /// one serves for patch after patch (Briggs and Torczon, ACM LOPLAS 1993; 2: 59). Belongs to one

@@ -53,7 +53,7 @@ std::optional<double> footDistanceMm(const WallSamples& wall, const SampleNumber
 
 }  // namespace
 
-double standingHeightMm(const WallEvidence& evidence, const Lesion& lesion, bool hasStalk,
+double standingHeightMm(const WallEvidence& evidence, const Lesion& lesion,
                         SampleNumbers& numbers) {
     const WallSamples& wall = evidence.samples;
     const auto& patch = lesion.patch.samples;
@@ -89,7 +89,8 @@ double standingHeightMm(const WallEvidence& evidence, const Lesion& lesion, bool
         above.push_back(quadric->heightMm(place));
         way = std::max(way, glm::distance(place, root));
     }
-    if (hasStalk && found && !isFold) return std::min(way, foot + footWidthMm + lesion.diameter.mm);
+    if (standsOnStalk(lesion) && found && !isFold)
+        return std::min(way, foot + footWidthMm + lesion.diameter.mm);
     const auto top = above.begin() + std::ptrdiff_t(topShare * double(above.size() - 1));
     std::nth_element(above.begin(), top, above.end());
     if (isFold) return std::clamp(*top, 0.0, film);

@@ -393,17 +393,19 @@ TEST(Candidates, OtherLevelsAreTheSamePatchByAnotherLimit) {
 struct Plateau {
     static constexpr double radiusMm = 15.0;
     double widthMm = 14.0, heightMm = 2.0;
+    double longer = 1.0;     // how often as long along the tube as wide
     double besideMm = 0.0;   // how far from the first's middle the other's is; 0: there is none
     double foldMm = 0.0;     // of a fold around the tube, beneath the first
     double meshOffMm = 0.0;  // every other vertex of the mesh lies so far inside the lumen
     cad::WallEvidence evidence = {};
 
     static glm::dvec2 along(glm::dvec3 p) { return {radiusMm * std::atan2(p.y, p.x), p.z}; }
+    double offMm(glm::dvec2 place) const { return glm::length(place / glm::dvec2(1.0, longer)); }
     double wallAt(glm::dvec2 place) const {
         const auto rises = [&](double offMm) {
             return heightMm / (1.0 + std::exp((offMm - 0.5 * widthMm) / 0.4));
         };
-        double height = rises(glm::length(place));
+        double height = rises(offMm(place));
         if (besideMm > 0.0) height += rises(glm::distance(place, {0.0, besideMm}));
         height += foldMm * std::exp(-0.5 * std::pow(place.y / 3.0, 2.0));
         return radiusMm - height;
@@ -438,8 +440,7 @@ struct Plateau {
     cad::Patch patchWithin(double mm) const {
         cad::Patch patch;
         for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); ++v)
-            if (glm::length(along(evidence.samples.mesh.vertices[v])) < mm)
-                patch.samples.push_back(v);
+            if (offMm(along(evidence.samples.mesh.vertices[v])) < mm) patch.samples.push_back(v);
         return patch;
     }
     double meanWithin(double mm) const {
@@ -549,9 +550,9 @@ std::optional<cad::Lesion> lesionOf(const cad::WallEvidence& evidence, cad::Patc
     return cad::standUp(evidence, std::move(patch), evidence.smooth->grid(), numbers);
 }
 
-double standingOf(const cad::WallEvidence& evidence, const cad::Lesion& lesion, bool hasStalk) {
+double standingOf(const cad::WallEvidence& evidence, const cad::Lesion& lesion) {
     cad::SampleNumbers numbers(evidence.samples.mesh.vertices.size());
-    return cad::standingHeightMm(evidence, lesion, hasStalk, numbers);
+    return cad::standingHeightMm(evidence, lesion, numbers);
 }
 
 TEST(StandingHeight, OfAFlatLesionIsAboveTheTubeThoughThePatchIsItsMiddle) {
@@ -562,8 +563,21 @@ TEST(StandingHeight, OfAFlatLesionIsAboveTheTubeThoughThePatchIsItsMiddle) {
             const auto lesion = lesionOf(plateau.evidence, plateau.patchWithin(patch));
             ASSERT_TRUE(lesion);
             EXPECT_LT(lesion->heightMm, 0.7 * height);
-            EXPECT_NEAR(standingOf(plateau.evidence, *lesion, false), height, 0.3) << patch;
+            EXPECT_NEAR(standingOf(plateau.evidence, *lesion), height, 0.3) << patch;
         }
+    }
+}
+
+// What is long and low has a base that is narrow beside its length.
+TEST(StandingHeight, OfALongLesionIsNotItsLength) {
+    for (const double longer : {2.0, 3.0, 4.5}) {
+        Plateau plateau{.widthMm = 6.0, .longer = longer};
+        plateau.make();
+        const auto lesion = lesionOf(plateau.evidence, plateau.patchWithin(3.2));
+        ASSERT_TRUE(lesion);
+        EXPECT_FALSE(cad::standsOnStalk(*lesion));
+        EXPECT_GT(lesion->diameter.mm, 6.0 * longer) << "down to its foot";
+        EXPECT_NEAR(standingOf(plateau.evidence, *lesion), plateau.heightMm, 0.4) << longer;
     }
 }
 
@@ -629,8 +643,9 @@ TEST(StandingHeight, OfAHeadOnAStalkHoldsTheStalk) {
         mushroom.make();
         const auto lesion = lesionOf(mushroom.evidence, mushroom.head());
         ASSERT_TRUE(lesion);
+        EXPECT_TRUE(cad::standsOnStalk(*lesion));
         const double height = centre + Mushroom::headMm;
-        EXPECT_NEAR(standingOf(mushroom.evidence, *lesion, true), height, 0.5) << centre;
+        EXPECT_NEAR(standingOf(mushroom.evidence, *lesion), height, 0.5) << centre;
         // Its base, a film across the stalk, is no wall.
         EXPECT_LT(lesion->heightMm, 2.0 * Mushroom::headMm + 2.5) << centre;
     }
@@ -642,12 +657,10 @@ TEST(StandingHeight, OnAFoldIsNotTheFolds) {
     onFold.make();
     const auto lesion = lesionOf(onFold.evidence, onFold.patchWithin(4.5));
     ASSERT_TRUE(lesion);
-    for (const bool hasStalk : {false, true}) {
-        const double height = standingOf(onFold.evidence, *lesion, hasStalk);
-        EXPECT_LE(height, lesion->heightMm);
-        EXPECT_GT(height, 0.9 * onFold.heightMm);
-        EXPECT_LT(height, onFold.heightMm + 0.4 * onFold.foldMm);
-    }
+    const double height = standingOf(onFold.evidence, *lesion);
+    EXPECT_LE(height, lesion->heightMm);
+    EXPECT_GT(height, 0.9 * onFold.heightMm);
+    EXPECT_LT(height, onFold.heightMm + 0.4 * onFold.foldMm);
 }
 
 TEST(StandingHeight, IsTheFilmsWhereNobodyHasSeenTheWallAround) {
@@ -656,7 +669,7 @@ TEST(StandingHeight, IsTheFilmsWhereNobodyHasSeenTheWallAround) {
     const auto lesion = lesionOf(plateau.evidence, plateau.patchWithin(7.5));
     ASSERT_TRUE(lesion);
     plateau.evidence.unseen.assign(plateau.evidence.unseen.size(), 1);
-    EXPECT_EQ(standingOf(plateau.evidence, *lesion, false), lesion->heightMm);
+    EXPECT_EQ(standingOf(plateau.evidence, *lesion), lesion->heightMm);
 }
 
 TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
