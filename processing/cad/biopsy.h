@@ -16,6 +16,7 @@ namespace haustra::cad {
 /// Rays run 0.5 mm a step, and look no deeper than about 20 mm (§6.2.4).
 inline constexpr double biopsyStepMm = 0.5;
 inline constexpr int biopsySteps = 40;
+/// How far behind the surface a ray's peak is looked for.
 inline constexpr double peakMm = 5.0;
 
 /// A transfer function for one step of a biopsy ray, by whole HU. Unlit: the picture is of the
@@ -43,8 +44,8 @@ struct BiopsyRay {
     float opacity = 0.0f;
     float tissueMm = 0.0f;  ///< until the lumen began again; the whole way where it did not
     bool reenters = false;  ///< the lumen began again
-    /// The greatest on its first peakMm of tissue: a wall thinner than the scan resolves has less
-    /// than its tissue's, a thickened one all of it.
+    /// The greatest within peakMm of where it begins: a wall thinner than the scan resolves has
+    /// less than its tissue's, a thickened one all of it.
     float peakHu = -1024.0f;
 };
 

@@ -17,6 +17,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 namespace haustra::cad {
 namespace {
@@ -140,6 +141,7 @@ struct Measures {
     const ResidueFilms& films;
     std::span<const float> textureDistances;
     int threads;
+    const Progress& progress;
 };
 
 // Adds those of the patches that are bodies, residue apart; `levelOf` of each, or of none.
@@ -148,11 +150,14 @@ void measure(const Measures& with, std::vector<Patch> patches,
              std::vector<Candidate>* residue) {
     std::vector<std::optional<Candidate>> measured(patches.size());
     std::vector<std::uint8_t> nothingElse(patches.size(), 0);
+    const std::thread::id caller = std::this_thread::get_id();
     // Patches differ in size by a thousand times.
     parallelForEach(
         patches.size(), with.threads,
         [&] { return SampleNumbers(with.evidence.samples.mesh.vertices.size()); },
         [&](std::size_t n, SampleNumbers& numbers) {
+            if (with.progress && std::this_thread::get_id() == caller)
+                with.progress(double(n) / double(patches.size()));
             if (liesBehindUntagged(with.evidence, patches[n])) return;
             auto lesion =
                 standUp(with.evidence, std::move(patches[n]), with.colon.cleansed.grid(), numbers);
@@ -205,8 +210,8 @@ std::vector<double> residueLikePolyps(const std::vector<Candidate>& residue,
     for (const WitnessedPlace& place : placesOf(witnesses)) {
         const PlaceWitness& best = witnesses[place.best];
         const bool found = std::ranges::any_of(findings, [&](const Finding& finding) {
-            return glm::distance(finding.positionMm, best.centreMm) <
-                   0.5 * std::max(finding.diameterMm, best.diameterMm);
+            return isSamePlace(finding.positionMm, finding.diameterMm, best.centreMm,
+                               best.diameterMm);
         });
         if (best.probability >= model.operatingPoint && !found)
             arcs.push_back(alongColon.at(residue[place.best].lesion.topMm).arcMm);
@@ -282,53 +287,62 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
     std::array<std::vector<Patch>, 3> made;
     const std::array<std::function<void()>, 3> parts{
         [&] {
-            if (texture && options.method.texture)
-                made[0] = patchesByTexture(evidence, distances, some);
+            if (texture) made[0] = patchesByTexture(evidence, distances, some);
         },
-        [&] {
-            if (options.method.shape) made[1] = patchesByShape(evidence, Generator::shape, some);
-        },
-        [&] {
-            if (options.method.shape)
-                made[2] = patchesByShape(evidence, Generator::broadShape, some);
-        }};
+        [&] { made[1] = patchesByShape(evidence, Generator::shape, some); },
+        [&] { made[2] = patchesByShape(evidence, Generator::broadShape, some); }};
     parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t part = begin; part < end; ++part)
             parts[part]();
     });
     const ResidueFilms films(colon, evidence);
-    const Measures with{colon, evidence, films, distances, options.threads};
+    const Measures with{colon, evidence, films, distances, options.threads, options.progress};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));
     std::vector<Candidate> candidates;
     measure(with, std::move(patches), {}, candidates, residue);
-    if (options.method.classifier) measureOtherLevels(with, model, candidates);
+    measureOtherLevels(with, model, candidates);
     return candidates;
 }
 
-void weigh(std::vector<Candidate>& candidates, const CadModel& model, const Method& method) {
-    if (!method.classifier)
-        std::erase_if(candidates, [](const Candidate& each) { return each.levelOf >= 0; });
+namespace {
+
+// Of each place the best witness, which has what `ofPlace` makes of the place's score and its own.
+template <class OfCandidate, class OfPlace>
+void keepPlaces(std::vector<Candidate>& candidates, const OfCandidate& ofCandidate,
+                const OfPlace& ofPlace) {
     std::vector<PlaceWitness> witnesses;
-    for (const Candidate& candidate : candidates) {
-        const double probability = method.classifier ? model.probability(candidate.features)
-                                   : model.thresholds.pass(candidate.features) ? 1.0
-                                                                               : 0.0;
+    for (const Candidate& candidate : candidates)
         witnesses.push_back({candidate.lesion.centreMm, candidate.lesion.diameter.mm,
-                             candidate.lesion.areaMm2, probability, candidate.levelOf});
-    }
+                             candidate.lesion.areaMm2, ofCandidate(candidate.features),
+                             candidate.levelOf});
     std::vector<Candidate> kept;
     for (const WitnessedPlace& place : placesOf(witnesses)) {
         kept.push_back(std::move(candidates[place.best]));
         kept.back().levelOf = -1;  // what it is another level of need not be kept
-        kept.back().probability = method.classifier ? model.placeProbability(place.score)
-                                                    : witnesses[place.best].probability;
+        kept.back().probability = ofPlace(place.score, witnesses[place.best].probability);
     }
     std::stable_sort(kept.begin(), kept.end(), [](const Candidate& a, const Candidate& b) {
         return a.probability > b.probability;
     });
     candidates = std::move(kept);
+}
+
+}  // namespace
+
+void weigh(std::vector<Candidate>& candidates, const CadModel& model) {
+    keepPlaces(
+        candidates, [&](const FeatureVector& features) { return model.probability(features); },
+        [&](double score, double) { return model.placeProbability(score); });
+}
+
+void weighByThresholds(std::vector<Candidate>& candidates, const ShapeThresholds& thresholds) {
+    std::erase_if(candidates, [](const Candidate& each) { return each.levelOf >= 0; });
+    keepPlaces(
+        candidates,
+        [&](const FeatureVector& features) { return thresholds.pass(features) ? 1.0 : 0.0; },
+        [](double, double ofBest) { return ofBest; });
 }
 
 Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
@@ -373,20 +387,23 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
 
 Findings detectPolyps(const PreparedColon& colon, const CadModel& model,
                       const DetectOptions& options) {
-    const auto part = [&](double from, double to) -> Progress {
-        if (!options.progress) return {};
-        return [=, &options](double share) { options.progress(from + (to - from) * share); };
-    };
+    // Half of the time each, roughly.
+    constexpr double evidenceShare = 0.5;
     EvidenceOptions gathering;
-    if (!options.method.automaticTransfer) gathering.transferFunction = fixedBiopsyTransfer();
     gathering.threads = options.threads;
-    gathering.progress = part(0.0, 0.7);
+    if (options.progress)
+        gathering.progress = [&](double share) { options.progress(evidenceShare * share); };
     const ExaminedColon examined(colon, gathering);
     const WallEvidence& evidence = examined.evidence();
     std::vector<Candidate> residue;
+    DetectOptions finding{options.threads};
+    if (options.progress)
+        finding.progress = [&](double share) {
+            options.progress(evidenceShare + (1.0 - evidenceShare) * share);
+        };
     auto candidates =
-        findCandidates(examined.colon(), evidence, &model.texture, options, &model, &residue);
-    weigh(candidates, model, options.method);
+        findCandidates(examined.colon(), evidence, &model.texture, finding, &model, &residue);
+    weigh(candidates, model);
     if (options.progress) options.progress(1.0);
     Findings findings =
         findingsOf(examined.colon(), evidence, candidates, model, residue, options.threads);

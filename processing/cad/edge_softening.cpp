@@ -1,7 +1,7 @@
 #include "cad/edge_softening.h"
 
 #include "cad/gaussian_kernel.h"
-#include "cad/median.h"
+#include "cad/quantile.h"
 #include "core/crop.h"
 #include "core/parallel.h"
 #include "core/voxel_sweep.h"
@@ -132,17 +132,14 @@ std::optional<SoftenedScan> softened(const PreparedColon& colon, const WallEvide
                 profiles.hu[k].push_back(float(trilinear(
                     power, glm::dvec3(voxelFromPatient * glm::dvec4(line.at(edgeDepth(d)), 1.0)))));
     });
-    SoftenedScan made;
-    made.strength = strengthOf(profiles, scale);
-    const Weights weights = weightsOf(made.strength);
+    const Weights weights = weightsOf(strengthOf(profiles, scale));
     Volume<float> sum(cropped(grid, box), 0.0f);
     forPowers(colon.cleansed, box, threads, [&](std::size_t k, const Volume<float>& power) {
         const auto out = sum.writable();
         forVoxels(sum.grid(), threads,
                   [&](std::size_t n, glm::ivec3) { out[n] += float(weights[k]) * power[n]; });
     });
-    made.cleansed = colon.cleansed.clone();
-    made.ct = colon.ct.clone();
+    SoftenedScan made{colon.ct.clone(), colon.cleansed.clone()};
     const auto cleansed = made.cleansed.writable(), ct = made.ct.writable();
     forVoxels(sum.grid(), threads, [&](std::size_t n, glm::ivec3 v) {
         const std::size_t at = grid.index(box.lo + v);

@@ -10,7 +10,6 @@ namespace haustra::cad {
 /// A scan without its kernel's enhancement of edges.
 struct SoftenedScan {
     Volume<std::int16_t> ct, cleansed;
-    double strength = 0.0;  ///< a, below
 };
 
 /// A kernel that enhances edges within the slices is taken to make v = u + a (u − G u) of the scan
@@ -21,7 +20,8 @@ struct SoftenedScan {
 ///
 /// a is the least by which the wall's edges (`peak` of wallEdges) come down to those that detection
 /// has learnt from; noise, which the kernel enhanced alike, comes down with them. The volumes are
-/// whole, and differ from the colon's within reach of its wall alone; what cleansing has taken out
+/// whole, and differ from the colon's in the box around its wall, as far as biopsy rays
+/// reach, alone; what cleansing has taken out
 /// stays the same. `edges` are the colon's. None where these are no sharper than what has been
 /// learnt from. The same for any number of threads.
 std::optional<SoftenedScan> softened(const PreparedColon& colon, const WallEvidence& evidence,

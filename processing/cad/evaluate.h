@@ -33,7 +33,6 @@ EvaluatedCase evaluateCase(std::string name, std::string group,
 
 struct Share {
     int hit = 0, of = 0;
-    double share() const { return of > 0 ? double(hit) / of : 0.0; }
 };
 
 struct Evaluation {

@@ -107,32 +107,34 @@ std::vector<std::uint32_t> facesOf(const SpannedPatch& spanned) {
     return faces;
 }
 
-// The body between wall and film, its volume, centre, base and axis; false where it has none.
-bool closeBody(const SpannedPatch& spanned, Lesion& lesion) {
+// The body between wall and film, closed, counter-clockwise seen from outside, and its volume,
+// centre, base and axis; none where it has no base.
+std::optional<TriMesh> closeBody(const SpannedPatch& spanned, Lesion& lesion) {
     const TriMesh& wall = spanned.wall.mesh;
     SampleNumbers& numbers = spanned.numbers;
     const std::vector<std::uint32_t> faces = facesOf(spanned);
-    if (faces.empty()) return false;
+    if (faces.empty()) return {};
     // Wall and base have the same triangles; where both have the same place they cancel. Samples
     // beyond the inside anchor the base and are one place of both.
     for (const std::uint32_t t : faces)
         for (int n = 0; n < 3; ++n)
             numbers.add(std::uint32_t(wall.triangles[t][n]));
-    lesion.body.vertices.reserve(numbers.count() + spanned.inside);
+    TriMesh body;
+    body.vertices.reserve(numbers.count() + spanned.inside);
     for (std::uint32_t n = 0; n < numbers.count(); ++n)
-        lesion.body.vertices.push_back(wall.vertices[numbers.sample(n)]);
+        body.vertices.push_back(wall.vertices[numbers.sample(n)]);
     for (std::uint32_t n = 0; n < spanned.inside; ++n)
-        lesion.body.vertices.push_back(spanned.film.at(n));
+        body.vertices.push_back(spanned.film.at(n));
     glm::dvec3 normal(0.0), moment(0.0);
     const glm::dvec3 origin = wall.vertices[numbers.sample(0)];
     const auto add = [&](glm::ivec3 corners) {
-        const glm::dvec3 a = lesion.body.vertices[std::size_t(corners.x)] - origin,
-                         b = lesion.body.vertices[std::size_t(corners.y)] - origin,
-                         c = lesion.body.vertices[std::size_t(corners.z)] - origin;
+        const glm::dvec3 a = body.vertices[std::size_t(corners.x)] - origin,
+                         b = body.vertices[std::size_t(corners.y)] - origin,
+                         c = body.vertices[std::size_t(corners.z)] - origin;
         const double volume = glm::dot(a, glm::cross(b, c)) / 6.0;
         lesion.volumeMm3 += volume;
         moment += volume * 0.25 * (a + b + c);
-        lesion.body.triangles.push_back(corners);
+        body.triangles.push_back(corners);
     };
     for (const std::uint32_t t : faces) {
         const glm::ivec3 corners = wall.triangles[t];
@@ -145,18 +147,17 @@ bool closeBody(const SpannedPatch& spanned, Lesion& lesion) {
         // The wall's outside is the tissue: seen from the lumen the patch turns the other way.
         add({top.x, top.z, top.y});
         add(base);
-        const glm::dvec3 a = lesion.body.vertices[std::size_t(base.x)],
-                         side = glm::cross(lesion.body.vertices[std::size_t(base.y)] - a,
-                                           lesion.body.vertices[std::size_t(base.z)] - a);
+        const glm::dvec3 a = body.vertices[std::size_t(base.x)],
+                         side = glm::cross(body.vertices[std::size_t(base.y)] - a,
+                                           body.vertices[std::size_t(base.z)] - a);
         normal -= side;
         lesion.baseMm2 += 0.5 * glm::length(side);
     }
     const double length = glm::length(normal);
-    if (!(length > 0.0)) return false;
+    if (!(length > 0.0)) return {};
     lesion.axis = normal / length;
     lesion.centreMm = origin + moment / lesion.volumeMm3;
-    lesion.rimMm = std::sqrt(4.0 * std::numbers::pi * lesion.baseMm2);
-    return true;
+    return body;
 }
 
 // The patch's area, and its top above the film.
@@ -169,18 +170,6 @@ void measureAbove(const SpannedPatch& spanned, std::span<const std::uint32_t> pa
         if (height <= lesion.heightMm) continue;
         lesion.heightMm = height, lesion.topMm = spanned.wall.mesh.vertices[patch[n]];
     }
-}
-
-std::vector<std::uint32_t> rimOf(const WallSamples& wall, std::span<const std::uint32_t> patch,
-                                 const SampleNumbers& numbers) {
-    std::vector<std::uint32_t> rim;
-    for (const std::uint32_t v : patch) {
-        const auto isBeyond = [&](std::uint32_t next) {
-            return numbers.number(next) >= patch.size();
-        };
-        if (std::ranges::any_of(wall.around(v), isBeyond)) rim.push_back(v);
-    }
-    return rim;
 }
 
 // A patch ends where the body's side turns from convex to concave; its foot is farther out.
@@ -297,18 +286,17 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const G
     const Membrane film(wall, numbers);
     const SpannedPatch spanned{wall, film, numbers, numbers.count()};
     Lesion lesion;
-    if (!closeBody(spanned, lesion)) return {};
-    if (!isAmong(lesion.body.vertices, lesion.centreMm))
-        lesion.centreMm = middleOf(wall, patch.samples);
+    const auto body = closeBody(spanned, lesion);
+    if (!body) return {};
+    if (!isAmong(body->vertices, lesion.centreMm)) lesion.centreMm = middleOf(wall, patch.samples);
     measureAbove(spanned, patch.samples, lesion);
-    lesion.rim = rimOf(wall, patch.samples, numbers);
     lesion.diameter = diameterOf(wall, patch.samples);
     lesion.widthMm = widthAcross(wall, patch.samples, lesion);
     if (!standsOnStalk(lesion)) {
         lesion.diameter = diameterOf(wall, downToFoot(spanned, patch.samples, lesion));
         lesion.widthMm = widthAcross(wall, patch.samples, lesion);
     }
-    lesion.voxels = voxelsWithin(lesion.body, grid);
+    lesion.voxels = voxelsWithin(*body, grid);
     if (lesion.voxels.empty()) lesion.voxels = voxelsBeneath(evidence, patch, grid);
     lesion.patch = std::move(patch);
     return lesion;

@@ -15,7 +15,6 @@ namespace haustra::cad {
 /// patch's rim as a soap film: the wall as it would be without the body.
 struct Lesion {
     Patch patch;
-    std::vector<std::uint32_t> rim;  ///< samples of the patch that border on others
     /// Of its volume; of the patch, by area, where parts above and beneath the base cancel so far
     /// that its volume's would lie beyond the box around the body.
     glm::dvec3 centreMm{0.0};
@@ -29,11 +28,9 @@ struct Lesion {
     double heightMm = 0.0;   ///< of the top above the base, along the axis
     double volumeMm3 = 0.0;  ///< between patch and base
     double areaMm2 = 0.0;    ///< of the patch
-    double rimMm = 0.0;      ///< length around: √(4π · the base's area)
     double baseMm2 = 0.0;    ///< of the base
-    TriMesh body;            ///< closed: patch and base, counter-clockwise seen from outside
-    /// Voxels of the scan's grid whose centres the body holds; where it holds none, those right
-    /// beneath the patch.
+    /// Voxels of the scan's grid whose centres lie between patch and base; where it holds none,
+    /// those right beneath the patch.
     std::vector<VoxelRun> voxels;
 };
 
@@ -77,11 +74,11 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
 std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const Grid& grid,
                               SampleNumbers& numbers);
 
-/// What a finding tells as its tissue, in memory order. These are the body's voxels that are no gas
-/// (a wide body's film lies in the lumen). And since a body thinner than voxels holds a centre only
-/// here and there, they are beneath each sample of the patch one voxel more: of those whose centres
-/// lie behind the wall there, the one that has the greatest share, by linear interpolation, in the
-/// point half a voxel beneath the sample.
+/// What a finding tells as its tissue, in memory order: the lesion's voxels that are no gas (a wide
+/// one's film lies in the lumen), and one voxel more beneath each sample of the patch, since a body
+/// thinner than voxels holds few of their centres. Of the eight voxels around the point half a
+/// voxel beneath the sample, it is the one of the greatest weight there whose centre lies behind
+/// the wall.
 std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
                                      const Lesion& lesion);
 

@@ -1,10 +1,11 @@
 #include "cad/lesion_features.h"
 
+#include "cad/quantile.h"
 #include "cad/wall_lift.h"
-#include "core/ct_scan.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 namespace haustra::cad {
@@ -12,9 +13,8 @@ namespace {
 
 class Named {
 public:
-    void operator()(std::string_view name, double value) {
-        values_[featureNumber(name)] =
-            float(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0.0);
+    void operator()(FeatureName name, double value) {
+        values_[name.number] = float(std::isfinite(value) ? std::clamp(value, -1e6, 1e6) : 0.0);
     }
     const FeatureVector& values() const { return values_; }
 
@@ -22,11 +22,8 @@ private:
     FeatureVector values_{};
 };
 
-double quantile(std::vector<float>& values, double q) {
-    if (values.empty()) return 0.0;
-    const auto at = values.begin() + std::ptrdiff_t(q * double(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+double quantile(std::vector<float>& values, double share) {
+    return values.empty() ? 0.0 : quantileOf(values, share);
 }
 
 double mean(const std::vector<float>& values) {
@@ -126,10 +123,12 @@ constexpr double farthestGradientMm = 16.0;
 
 void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named& put) {
     const double radius = std::min(0.6 * lesion.diameter.mm + 1.0, farthestGradientMm);
-    put("gradient_concentration", gradientConcentration(*evidence.smooth, lesion.centreMm, radius));
-    double most = -1.0;
-    for (const double share : {0.25, 0.5, 0.75}) {
-        const glm::dvec3 place = glm::mix(lesion.topMm, lesion.centreMm, 2.0 * share);
+    // At the centre; and the greatest of there, half way to the top, and as far beyond it.
+    const double atCentre = gradientConcentration(*evidence.smooth, lesion.centreMm, radius);
+    put("gradient_concentration", atCentre);
+    double most = atCentre;
+    for (const double way : {0.5, 1.5}) {
+        const glm::dvec3 place = glm::mix(lesion.topMm, lesion.centreMm, way);
         most = std::max(most, gradientConcentration(*evidence.smooth, place, radius));
     }
     put("gradient_concentration_max", most);
@@ -329,9 +328,10 @@ FeatureVector asDenseAsTheWall(const FeatureVector& features) {
     constexpr float mostDifference = 0.15f;
     const float added = std::clamp(-features[featureNumber("peak_median")], 0.0f, mostDifference);
     FeatureVector weighed = features;
-    for (const std::string_view name : {"density_median", "density_p90", "density_core",
-                                        "peak_median", "peak_p90", "peak_over_ring"})
-        weighed[featureNumber(name)] += added;
+    for (const std::size_t n : {featureNumber("density_median"), featureNumber("density_p90"),
+                                featureNumber("density_core"), featureNumber("peak_median"),
+                                featureNumber("peak_p90"), featureNumber("peak_over_ring")})
+        weighed[n] += added;
     return weighed;
 }
 

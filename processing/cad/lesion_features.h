@@ -39,9 +39,17 @@ inline constexpr std::array<std::string_view, 52> featureNames{
     // where it is
     "toward_axis", "clearance_mm", "valve_region", "tube_region"};
 inline constexpr int featureCount = int(featureNames.size());
-/// A name's place in featureNames; featureCount where there is none of that name.
-constexpr std::size_t featureNumber(std::string_view name) {
-    return std::size_t(std::ranges::find(featureNames, name) - featureNames.begin());
+/// One of featureNames, by its place there: a name that is none of them does not compile.
+struct FeatureName {
+    std::size_t number = 0;
+    consteval FeatureName(const char* name)
+        : number(std::size_t(std::ranges::find(featureNames, std::string_view(name)) -
+                             featureNames.begin())) {
+        if (number == featureNames.size()) throw "no feature has this name";
+    }
+};
+consteval std::size_t featureNumber(FeatureName name) {
+    return name.number;
 }
 using FeatureVector = std::array<float, std::size_t(featureCount)>;
 
@@ -67,9 +75,10 @@ FeatureVector featuresOf(const PreparedColon& colon, const WallEvidence& evidenc
                          std::span<const float> textureDistance, const Lesion& lesion,
                          SampleNumbers& numbers);
 
-/// How well the gradients around a place point to it: over evenly spread directions, the greatest
-/// mean cosine between the scan's gradient and the way to the place, along stretches that begin 1
-/// mm away and end within `radiusMm` (Kobatake and Hashimoto, IEEE TIP 1999; 8: 1417). −1…1.
+/// How well the gradients around a place point to it (Kobatake and Hashimoto, IEEE TIP 1999; 8:
+/// 1417): the mean, over evenly spread directions, of the greatest mean cosine between the scan's
+/// gradient and the way to the place along any stretch that begins 1 mm away and ends within
+/// `radiusMm`. −1…1.
 double gradientConcentration(const SmoothScan& scan, glm::dvec3 placeMm, double radiusMm);
 
 }  // namespace haustra::cad

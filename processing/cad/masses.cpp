@@ -24,7 +24,7 @@ std::vector<MassOfFindings> massesOf(std::span<const Finding> findings) {
     for (std::size_t first = 0; first < findings.size(); ++first) {
         if (taken[first]) continue;
         taken[first] = true;
-        MassOfFindings mass{{first}, findings[first].diameterMm};
+        MassOfFindings mass{{first}};
         for (std::size_t n = 0; n < mass.findings.size(); ++n) {
             for (std::size_t other = 0; other < findings.size(); ++other) {
                 if (taken[other] || gapMm(findings[mass.findings[n]], findings[other]) > mostGapMm)

@@ -108,8 +108,15 @@ TextureModel textureIn(const ModelJson& json) {
 }  // namespace
 
 bool isModelLine(std::string_view text, std::size_t longest) {
-    return text.size() <= longest &&
-           std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+    if (text.size() > longest ||
+        std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+        return false;
+    try {
+        ModelJson(std::string(text)).dump();
+        return true;
+    } catch (const ModelJson::type_error&) {
+        return false;  // no UTF-8
+    }
 }
 
 std::string textureText(const TextureModel& texture) {
@@ -125,19 +132,24 @@ Result<TextureModel> textureOfText(std::string_view text, const std::string& pla
 }
 
 bool ShapeThresholds::pass(const FeatureVector& features) const {
-    const auto within = [&](std::string_view name, std::pair<double, double> range) {
-        const double value = features[featureNumber(name)];
+    const auto within = [&](FeatureName name, std::pair<double, double> range) {
+        const double value = features[name.number];
         return value >= range.first && value <= range.second;
     };
     return within("shape_index_mean", shapeIndex) && within("curvedness_mean", curvedness) &&
            within("gradient_concentration", gradientConcentration);
 }
 
-double CadModel::probability(const FeatureVector& features) const {
-    if (!rises(features)) return 0.0;
+double candidateProbability(const BoostedTrees& trees, const NeuralNetworks& networks, double a,
+                            double b, const FeatureVector& features) {
     const FeatureVector weighed = asDenseAsTheWall(features);
-    const double trees = calibrationA + calibrationB * boosted.at(weighed);
-    return logistic(0.5 * (trees + networks.at(weighed)));
+    return logistic(0.5 * (a + b * trees.at(weighed) + networks.at(weighed)));
+}
+
+double CadModel::probability(const FeatureVector& features) const {
+    return rises(features)
+               ? candidateProbability(boosted, networks, calibrationA, calibrationB, features)
+               : 0.0;
 }
 
 double CadModel::placeProbability(double score) const {

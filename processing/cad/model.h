@@ -26,10 +26,15 @@ struct ShapeThresholds {
     bool pass(const FeatureVector& features) const;
 };
 
-/// What is shown of a model to people: one line without control characters, of at most so many
-/// bytes; a description as long as the protocol carries it (protocol/limits.h).
+/// What is shown of a model to people: one line of UTF-8 without control characters, of at most so
+/// many bytes; a description as long as the protocol carries it (protocol/limits.h).
 inline constexpr std::size_t longestModelName = 200, longestModelDescription = 2000;
 bool isModelLine(std::string_view text, std::size_t longest);
+
+/// How probable it is that a candidate, which rises, is a polyp by itself: the logarithm of its
+/// odds is the mean of the networks' and of a + b·s, s being the trees' sum (Platt 1999).
+double candidateProbability(const BoostedTrees& trees, const NeuralNetworks& networks, double a,
+                            double b, const FeatureVector& features);
 
 struct CadModel {
     std::string name;       ///< "phantoms-1"; a model's line
@@ -51,8 +56,7 @@ struct CadModel {
     double placeA = 0.0, placeB = 1.0;
     double operatingPoint = 0.5;  ///< probability from which on a candidate is a finding
 
-    /// Of a candidate by itself: the logarithm of its odds is the mean of the trees' and the
-    /// networks'. 0 where it does not rise.
+    /// candidateProbability; 0 where it does not rise.
     double probability(const FeatureVector& features) const;
     /// Of a place with this score: what a finding tells.
     double placeProbability(double score) const;
@@ -72,9 +76,9 @@ Result<TextureModel> textureOfText(std::string_view text, const std::string& pla
 /// The one that the program carries: trained on phantoms alone.
 std::string_view builtInModelText();
 
-/// What must be known for 1/(1 + exp(−(a + b·x))) to fit `truths` (0 or 1) at x best: maximum
+/// The pair (a, b) for which 1/(1 + exp(−(a + b·x))) fits `truths` (0 or 1) best: maximum
 /// likelihood by Newton's method, a step halved until it is one downhill, with a weak pull towards
-/// b = 1 and a = 0.
+/// a = 0 and b = 1.
 std::pair<double, double> fitLogistic(std::span<const double> x, std::span<const int> truths);
 
 }  // namespace haustra::cad

@@ -24,8 +24,8 @@ std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses) {
         const PlaceWitness& witness = witnesses[n];
         auto told = std::find_if(places.begin(), places.end(), [&](const WitnessedPlace& place) {
             const PlaceWitness& best = witnesses[place.best];
-            return glm::distance(best.centreMm, witness.centreMm) <
-                   0.5 * std::max(best.diameterMm, witness.diameterMm);
+            return isSamePlace(best.centreMm, best.diameterMm, witness.centreMm,
+                               witness.diameterMm);
         });
         if (told == places.end()) {
             told = places.insert(places.end(), {n, 0.0});
@@ -35,6 +35,11 @@ std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses) {
             told->score += witness.probability / asked;
     }
     return places;
+}
+
+bool isSamePlace(glm::dvec3 oneMm, double oneDiameterMm, glm::dvec3 otherMm,
+                 double otherDiameterMm) {
+    return glm::distance(oneMm, otherMm) < 0.5 * std::max(oneDiameterMm, otherDiameterMm);
 }
 
 double logit(double probability) {

@@ -30,8 +30,12 @@ struct WitnessedPlace {
     double score = 0.0;
 };
 
-/// The most probable witness first; one whose centre is nearer to an earlier place's than half the
-/// larger of the two diameters is of that place. Other levels of what is not worth another look are
+/// Whether one centre is nearer to the other than half the larger of the two diameters.
+bool isSamePlace(glm::dvec3 oneMm, double oneDiameterMm, glm::dvec3 otherMm,
+                 double otherDiameterMm);
+
+/// The most probable place first. A witness is of the first place that is the same as its own, by
+/// their centres, or of a new one. Other levels of what is not worth another look are
 /// no witnesses. O(witnesses · places).
 std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses);
 

@@ -1,6 +1,6 @@
 #include "cad/residue_film.h"
 
-#include "cad/median.h"
+#include "cad/quantile.h"
 #include "core/ct_scan.h"
 #include "core/normal_distribution.h"
 

@@ -36,7 +36,8 @@ public:
     const Grid& grid() const { return smooth_.grid(); }
     double at(glm::dvec3 patientMm) const;
     Derivatives derivatives(glm::dvec3 patientMm) const;
-    /// HU/mm: that of derivatives alone, by differences of linear().
+    /// HU/mm, by differences of linear() over a voxel and a half along each axis: a little less
+    /// smooth than the gradient of derivatives(), and much faster.
     glm::dvec3 gradient(glm::dvec3 patientMm) const;
 
     /// Of a place in voxels of grid(): linear between the smoothed voxels, clamped at the outermost

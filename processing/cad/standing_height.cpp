@@ -1,5 +1,6 @@
 #include "cad/standing_height.h"
 
+#include "cad/quantile.h"
 #include "cad/wall_quadric.h"
 
 #include <algorithm>
@@ -91,11 +92,10 @@ double standingHeightMm(const WallEvidence& evidence, const Lesion& lesion,
     }
     if (standsOnStalk(lesion) && found && !isFold)
         return std::min(way, foot + footWidthMm + lesion.diameter.mm);
-    const auto top = above.begin() + std::ptrdiff_t(topShare * double(above.size() - 1));
-    std::nth_element(above.begin(), top, above.end());
-    if (isFold) return std::clamp(*top, 0.0, film);
-    if (quadric->roughMm < goodFitMm) return std::clamp(*top, 0.0, film + mostBeneathFilmMm);
-    return std::clamp(*top, film,
+    const double top = quantileOf(above, topShare);
+    if (isFold) return std::clamp(top, 0.0, film);
+    if (quadric->roughMm < goodFitMm) return std::clamp(top, 0.0, film + mostBeneathFilmMm);
+    return std::clamp(top, film,
                       film + std::min(mostBeneathFilmMm, mostBeneathFilm * lesion.diameter.mm));
 }
 

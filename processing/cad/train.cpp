@@ -3,6 +3,7 @@
 #include "cad/places.h"
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
+#include "core/printed_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,7 +82,7 @@ std::vector<std::size_t> studiesOf(const std::vector<TrainingCase>& cases) {
     return studies;
 }
 
-// Of what rises, whether polyps and others are among it, so that they can be told apart.
+// Whether polyps and others are among them, so that they can be told apart.
 bool hasBoth(const std::vector<int>& truths) {
     return std::ranges::count(truths, 1) > 0 && std::ranges::count(truths, 0) > 0;
 }
@@ -144,50 +145,33 @@ Result<std::vector<EvaluatedCase>> calibratePlaces(CadModel& model,
 
 }  // namespace
 
-TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
+TextureExamples textureExamples(const WallEvidence& evidence, const FlatMap& flat,
                                 const std::vector<TrueLesion>& truth) {
-    const WallSamples samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
-    const std::size_t count = samples.mesh.vertices.size();
-    std::vector<std::uint32_t> chosen, inside;
-    for (std::size_t v = 0; v < count; v += std::max<std::size_t>(1, count / wallVectors))
-        chosen.push_back(std::uint32_t(v));
-    const std::size_t walls = chosen.size();
-    for (std::size_t v = 0; v < count; ++v) {
-        const glm::dvec3 p = samples.mesh.vertices[v];
-        const bool polyp = std::any_of(truth.begin(), truth.end(), [&](const TrueLesion& lesion) {
-            return lesion.neoplastic &&
-                   glm::distance(p, lesion.positionMm) < 0.5 * lesion.diameterMm + 0.5;
-        });
-        if (polyp) inside.push_back(std::uint32_t(v));
+    const auto& places = evidence.samples.mesh.vertices;
+    std::vector<std::uint32_t> walls, inside;
+    const std::size_t wallStep = std::max<std::size_t>(1, places.size() / wallVectors);
+    for (std::uint32_t v = 0; v < places.size(); ++v) {
+        if (v % wallStep == 0) walls.push_back(v);
+        if (std::ranges::any_of(truth, [&](const TrueLesion& lesion) {
+                return lesion.neoplastic &&
+                       glm::distance(places[v], lesion.positionMm) < 0.5 * lesion.diameterMm + 0.5;
+            }))
+            inside.push_back(v);
     }
+    const auto along = stripDirections(evidence.samples, flat);
+    const TextureStencil stencil(evidence.samples, along);
+    std::vector<glm::vec3> colors;
+    for (const BiopsyRay& ray : evidence.rays)
+        colors.push_back(ray.color);
+    const auto vectorAt = [&](std::uint32_t v) {
+        return textureVector(v, stencil.around(v, evidence.shapes[v].intoWall), colors);
+    };
+    TextureExamples examples;
+    for (const std::uint32_t v : walls)
+        examples.all.push_back(vectorAt(v));
     const std::size_t step = std::max<std::size_t>(1, inside.size() / polypVectors);
     for (std::size_t n = 0; n < inside.size(); n += step)
-        chosen.push_back(inside[n]);
-
-    const SmoothScan smooth = smoothedAround(colon, shapeSigmaMm, options.threads);
-    const BiopsyTable table(transferFunctionFor(options, wallStatistics(colon, smooth)));
-    const BiopsyScan scan{smooth, colon.lumen, colon.tissue.airBelowHu};
-    std::vector<WallShape> shapes(count);
-    std::vector<std::uint8_t> looked(count, 0);
-    std::vector<glm::vec3> colors(count);
-    const auto look = [&](std::uint32_t v) {
-        if (std::exchange(looked[v], 1)) return;
-        shapes[v] = shapeOf(smooth.derivatives(samples.mesh.vertices[v]));
-        colors[v] = castBiopsyRay(scan, table, samples.mesh.vertices[v],
-                                  glm::dvec3(shapes[v].intoWall), RayEnd::opaque)
-                        .color;
-    };
-    const auto along = stripDirections(samples, colon.flat);
-    const TextureStencil stencil(samples, along);
-    TextureExamples examples;
-    for (std::size_t n = 0; n < chosen.size(); ++n) {
-        look(chosen[n]);
-        const auto neighbours = stencil.around(chosen[n], shapes[chosen[n]].intoWall);
-        for (const std::uint32_t v : neighbours)
-            look(v);
-        (n < walls ? examples.all : examples.polyps)
-            .push_back(textureVector(chosen[n], neighbours, colors));
-    }
+        examples.polyps.push_back(vectorAt(inside[n]));
     return examples;
 }
 
@@ -227,10 +211,12 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options) {
     const std::vector<std::size_t> studies = studiesOf(cases);
-    if (studies.empty() || int(*std::ranges::max_element(studies)) + 1 < options.folds)
-        return fail(ErrorKind::badInput,
-                    "there are fewer studies among the training cases than parts of them");
-    const auto foldOf = [&](std::size_t n) { return studies[n] % std::size_t(options.folds); };
+    const std::size_t count = studies.empty() ? 0 : *std::ranges::max_element(studies) + 1;
+    if (count < std::size_t(trainingFolds))
+        return fail(ErrorKind::badInput, printed("the training cases are of %zu studies; it takes "
+                                                 "%d, which are left out in turns",
+                                                 count, trainingFolds));
+    const auto foldOf = [&](std::size_t n) { return studies[n] % std::size_t(trainingFolds); };
     CadModel model;
     model.name = options.name, model.trainedOn = options.trainedOn;
     model.trainingSha256 = options.trainingSha256;
@@ -253,7 +239,7 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     model.thresholds = {middleRange(indices), middleRange(curvedness), middleRange(concentration)};
 
     // The last have seen all cases, each others all but those of a fold.
-    std::vector<Judges> judges(std::size_t(options.folds) + 1);
+    std::vector<Judges> judges(std::size_t(trainingFolds) + 1);
     std::vector<std::vector<const TrainingCase*>> seen(judges.size());
     for (std::size_t fold = 0; fold < judges.size(); ++fold) {
         for (std::size_t n = 0; n < cases.size(); ++n)
@@ -302,10 +288,8 @@ Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<T
     trained.crossValidated = TRY(calibratePlaces(
         model, cases,
         [&](std::size_t n, const FeatureVector& features) {
-            const FeatureVector weighed = asDenseAsTheWall(features);
-            const double trees =
-                model.calibrationA + model.calibrationB * ofFold(n).boosted.at(weighed);
-            return logistic(0.5 * (trees + ofFold(n).networks.at(weighed)));
+            return candidateProbability(ofFold(n).boosted, ofFold(n).networks, model.calibrationA,
+                                        model.calibrationB, features);
         },
         options.falsePositives));
     model.boosted = std::move(judges.back().boosted);

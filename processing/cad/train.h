@@ -14,8 +14,7 @@ namespace haustra::cad {
 struct TextureExamples {
     std::vector<TextureVector> all, polyps;
 };
-/// Looks only at what it takes, which is faster than gathering all evidence by far.
-TextureExamples textureExamples(const PreparedColon& colon, const EvidenceOptions& options,
+TextureExamples textureExamples(const WallEvidence& evidence, const FlatMap& flat,
                                 const std::vector<TrueLesion>& truth);
 
 /// What one candidate is in truth.
@@ -40,13 +39,15 @@ struct TrainingCase {
     std::string study = {};  ///< cases of one study are of one patient; empty: of its own
 };
 
+/// In so many parts the training cases are left out in turns.
+inline constexpr int trainingFolds = 5;
+
 struct TrainOptions {
     std::string name, trainedOn, trainingSha256;
     std::vector<std::string> trainingScans = {};  ///< as CadModel has them, like the next
     std::string textureFrom = {};
     /// Findings a scan that are no lesion, in cross-validation, at the operating point.
     double falsePositives = 2.0;
-    int folds = 5;
     int threads = 0;
 };
 
@@ -60,8 +61,8 @@ struct TrainedModel {
 /// from all cases; calibration and operating point are those of others that had not seen the case
 /// nor another one of its study (folds by study), but for texture, which is learnt from all cases
 /// before. Fails (badInput) where there are fewer studies
-/// than folds, no polyp was a candidate, or polyps that the trees or networks had not seen score no
-/// higher than what is none.
+/// than trainingFolds, no polyp was a candidate, or polyps that the trees or networks had not seen
+/// score no higher than what is none.
 Result<TrainedModel> trainModel(const TextureModel& texture, const std::vector<TrainingCase>& cases,
                                 const TrainOptions& options);
 

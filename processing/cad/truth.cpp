@@ -38,7 +38,6 @@ TrueLesion lesionOfTruth(const nlohmann::json& read) {
     lesion.kind = read.value("kind", "");
     lesion.neoplastic = read.value("neoplastic", true);
     if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
-    lesion.onFold = read.value("on_fold", false);
     lesion.submergedShare = read.value("submerged_share", 0.0);
     lesion.untaggedShare = read.value("untagged_share", 0.0);
     lesion.filmMm = read.value("film_mm", 0.0);

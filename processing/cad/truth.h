@@ -16,11 +16,12 @@ struct TrueLesion {
     glm::dvec3 wallMm{0.0};      ///< its foot
     double diameterMm = 0.0;
     double heightMm = 0.0;
-    std::string kind;        ///< "sessile", "pedunculated", "flat"; or "untagged_stool", "film" …
-    bool neoplastic = true;  ///< else hyperplastic, which is neither praised nor blamed, or a mimic
+    std::string kind;  ///< "sessile", "pedunculated", "flat"; or "untagged_stool", "film" …
+    /// Else hyperplastic, which is neither praised nor blamed, or no growth at all: stool, a film,
+    /// the valve, a tube.
+    bool neoplastic = true;
     /// How much denser than the wall its inside is, HU; empty: nobody has told.
     std::optional<double> coreHu = {};
-    bool onFold = false;
     double submergedShare = 0.0;  ///< of its height, under fluid
     double untaggedShare = 0.0;   ///< of its height, in fluid or stool without tagging
     double filmMm = 0.0;          ///< thickness of the residue that coats it
@@ -39,7 +40,7 @@ struct TrueLesion {
 };
 
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
-/// "height_mm", "core_hu", "on_fold", "submerged_share", "untagged_share", "film_mm"}, …]}, other
+/// "height_mm", "core_hu", "submerged_share", "untagged_share", "film_mm"}, …]}, other
 /// members not being read; or
 /// {"findings": [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails
 /// (badInput) where it is neither, or a lesion lies outside any body (±100 m) or is wider than 300

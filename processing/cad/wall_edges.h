@@ -17,7 +17,7 @@ struct EdgeLine {
 /// Of some 20,000 places; none where too little of the wall is dry to tell.
 std::vector<EdgeLine> edgeLines(const WallEvidence& evidence);
 
-/// Depths behind the surface at which an edge's peak is looked for, up to 4 mm.
+/// Depths behind the surface at which an edge's peak is looked for: 0.25 to 3.75 mm.
 inline constexpr std::size_t edgeDepths = 15;
 inline constexpr double edgeDepth(std::size_t n) {
     return 0.25 * double(n + 1);
@@ -33,7 +33,7 @@ EdgeScale edgeScale(const PreparedColon& colon, const WallEvidence& evidence);
 /// In the median of the lines, as shares of that step, of the cleansed scan as it is.
 struct WallEdges {
     double rise = 0.0;  ///< from half a millimetre before the surface to as much behind
-    double peak = 0.0;  ///< the greatest within 4 mm behind; over 1 where an edge is enhanced
+    double peak = 0.0;  ///< the greatest at those depths; over 1 where an edge is enhanced
 };
 /// None where too little of the wall is dry to tell.
 std::optional<WallEdges> wallEdges(const PreparedColon& colon, const WallEvidence& evidence);

@@ -2,6 +2,7 @@
 
 #include "cad/biopsy_transfer.h"
 #include "cad/gaussian_kernel.h"
+#include "cad/quantile.h"
 #include "core/bridges.h"
 #include "core/ct_scan.h"
 
@@ -111,11 +112,8 @@ WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smoo
         }
         if (all) differences.push_back(std::abs(value[0] - 2.0 * value[1] + value[2]));
     }
-    if (differences.size() > 100) {
-        const auto middle = differences.begin() + std::ptrdiff_t(differences.size() / 2);
-        std::nth_element(differences.begin(), middle, differences.end());
-        statistics.noiseHu = *middle / 0.6745 / std::sqrt(6.0);
-    }
+    if (differences.size() > 100)
+        statistics.noiseHu = medianOf(differences) / 0.6745 / std::sqrt(6.0);
     return statistics;
 }
 

@@ -4,7 +4,6 @@
 #include "cad/along_colon.h"
 #include "cad/biopsy.h"
 #include "cad/former_fluid.h"
-#include "cad/texture.h"
 #include "cad/wall_samples.h"
 #include "cad/wall_shape.h"
 #include "core/centerline.h"
@@ -39,7 +38,7 @@ struct WallStatistics {
     double wallHu = 0.0;  ///< of the wall's tissue
     double fatHu = 0.0;   ///< of fat around it
     /// Standard deviation in the smoothed scan. Too low by a tenth at 30 HU and two fifths at 60,
-    /// as only places within 60 HU of soft tissue are counted.
+    /// as only places within 60 HU of soft tissue are counted; 0 where there are not a hundred.
     double noiseHu = 0.0;
 };
 
@@ -87,7 +86,8 @@ inline constexpr double biopsyReachMm = biopsyStepMm * biopsySteps + 2.0;
 SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int threads,
                           double reachMm = biopsyReachMm);
 
-/// `smooth`: at shapeSigmaMm. From beneath the surface's vertices.
+/// Wall and fat as the scan's tissue model has them, and the noise of `smooth` (at shapeSigmaMm),
+/// by second differences along lines into the tissue beneath some 40,000 of the surface's vertices.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
 
 /// That of the options, or else derived from the scan.

@@ -1,5 +1,6 @@
 #include "cad/wall_lift.h"
 
+#include "cad/quantile.h"
 #include "cad/wall_quadric.h"
 
 #include <algorithm>
@@ -41,9 +42,7 @@ WallLift liftOf(const WallEvidence& evidence, const Patch& patch, SampleNumbers&
         above.push_back(quadric->heightMm(quadric->placeOf(onScanSurface(evidence, v))));
         lift.meanMm += wall.areaMm2[v] * above.back() / area;
     }
-    const auto top = above.begin() + std::ptrdiff_t(0.9 * double(above.size() - 1));
-    std::nth_element(above.begin(), top, above.end());
-    lift.topMm = std::clamp(*top, -mostLiftMm, mostLiftMm);
+    lift.topMm = std::clamp(quantileOf(above, 0.9), -mostLiftMm, mostLiftMm);
     lift.meanMm = std::clamp(lift.meanMm, -mostLiftMm, mostLiftMm);
     return lift;
 }

@@ -327,13 +327,15 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
     for (std::size_t n = 0; n < cases.size(); ++n) {
         bar.show("texture", double(n) / double(cases.size()));
         const auto inputs = TRY(readInputs(cases[n], arguments));
+        const cad::ExaminedColon examined(inputs.colon(), evidenceOptions(arguments));
         const auto examples =
-            cad::textureExamples(inputs.colon(), evidenceOptions(arguments), cases[n].truth);
+            cad::textureExamples(examined.evidence(), examined.colon().flat, cases[n].truth);
         walls.insert(walls.end(), examples.all.begin(), examples.all.end());
         polyps.insert(polyps.end(), examples.polyps.begin(), examples.polyps.end());
     }
     if (polyps.empty())
-        return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
+        return fail(ErrorKind::badInput, "no polyp of the cases lies on a wall that was found",
+                    arguments.truth.string());
     const std::string text =
         cad::textureText(cad::learnTexture(walls, polyps, !isWithout(arguments, "pca")));
     if (!file.empty()) TRY(writeTextFile(file, text));
@@ -361,6 +363,38 @@ Result<void> checkUnseen(const cad::CadModel& model, const std::vector<LoadedCas
                                     what),
                         each.source.name());
     return {};
+}
+
+// What would else be told after hours of measuring.
+Result<void> checkTeaching(const std::vector<LoadedCase>& cases, const CadArguments& arguments) {
+    if (std::ranges::none_of(cases, [](const LoadedCase& each) {
+            return std::ranges::any_of(each.truth,
+                                       [](const auto& lesion) { return lesion.neoplastic; });
+        }))
+        return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
+    return {};
+}
+
+void sayUnflattened(const std::vector<LoadedCase>& cases, ProgressBar& bar) {
+    for (const LoadedCase& each : cases)
+        if (!each.source.find(product::flatMap))
+            bar.say(
+                fmt::format("{}: warning: it is not flattened: texture was measured along the "
+                            "scan's axis in place of the colon's",
+                            each.source.name()));
+}
+
+// Cases of one study are of one patient, and are left out together.
+Result<void> checkStudies(const std::vector<LoadedCase>& cases) {
+    std::set<std::string> named;
+    std::size_t studies = 0;
+    for (const LoadedCase& each : cases)
+        studies += each.studyMark.empty() || named.insert(each.studyMark).second;
+    if (studies >= std::size_t(cad::trainingFolds)) return {};
+    return fail(ErrorKind::badInput,
+                fmt::format("the {} cases are of {} studies; training takes {}, which are left out "
+                            "in turns",
+                            cases.size(), studies, cad::trainingFolds));
 }
 
 Result<std::vector<cad::TrainingCase>> examplesOf(const std::vector<LoadedCase>& loaded,
@@ -398,18 +432,22 @@ Result<void> runTrain(const CadArguments& arguments) {
     checkArguments(arguments);
     TRY(checkOutputFile(arguments.model));
     TRY(checkFolderOfCandidates(arguments));
-    cad::TrainOptions options;
-    if (int(arguments.cases.size()) < options.folds)
+    if (int(arguments.cases.size()) < cad::trainingFolds)
         throw CLI::ValidationError(
-            "CASES", fmt::format("training takes at least {} cases: as many parts of them are left "
-                                 "out in turns, to see what learning from the others is worth",
-                                 options.folds));
+            "CASES", fmt::format("training takes cases of at least {} studies: as many parts of "
+                                 "them are left out in turns, to see what learning from the others "
+                                 "is worth",
+                                 cad::trainingFolds));
+    cad::TrainOptions options;
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     std::optional<cad::CadModel> textureFrom;
     if (!arguments.texture.empty()) textureFrom = TRY(readModel(arguments.texture));
     ProgressBar bar;
     store::Sha256 hash;
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
+    TRY(checkStudies(loaded));
+    TRY(checkTeaching(loaded, arguments));
+    sayUnflattened(loaded, bar);
     for (const LoadedCase& each : loaded)
         hash.addWithLength(each.ct);
     rememberAll(loaded, options.trainingScans);
@@ -453,11 +491,7 @@ Result<void> runCalibrate(const CadArguments& arguments) {
     cad::CadModel model = TRY(readModel(arguments.from));
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
     TRY(checkUnseen(model, loaded, "calibrated on"));
-    if (std::ranges::none_of(loaded, [](const LoadedCase& each) {
-            return std::ranges::any_of(each.truth,
-                                       [](const auto& lesion) { return lesion.neoplastic; });
-        }))
-        return fail(ErrorKind::badInput, "the cases hold no polyp", arguments.truth.string());
+    TRY(checkTeaching(loaded, arguments));
     model.name = arguments.name.empty() ? model.name + "-calibrated" : arguments.name;
     model.trainedOn = arguments.description.empty()
                           ? fmt::format("{}; calibrated on {} other case{}", model.trainedOn,
@@ -474,6 +508,7 @@ Result<void> runCalibrate(const CadArguments& arguments) {
         return tooLong("description", "--description");
     TRY(makeFolderOfCandidates(arguments));
     ProgressBar bar;
+    sayUnflattened(loaded, bar);
     const auto cases = TRY(examplesOf(loaded, arguments, model.texture, &model, bar));
     const auto told = TRY(cad::calibrate(model, cases, arguments.falsePositives));
     // What it must not be judged by now.
@@ -582,8 +617,6 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     TRY(checkFolderOfCandidates(arguments));
     const auto store = TRY(store::CaseStore::open(arguments.store, false));
     const auto model = TRY(arguments.model.empty() ? builtInModel() : readModel(arguments.model));
-    cad::Method method;
-    method.classifier = usesClassifier(arguments);
     ProgressBar bar;
     // A case that is not there is told of before the first is measured.
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
@@ -600,7 +633,10 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         const std::string& name = arguments.cases[n];
         auto all = TRY(candidatesOf(loaded[n], arguments, model.texture, &model));
         leaveOut(all, arguments);
-        cad::weigh(all, model, method);
+        if (usesClassifier(arguments))
+            cad::weigh(all, model);
+        else
+            cad::weighByThresholds(all, model.thresholds);
         cases.push_back(cad::evaluateCase(name, groupOf(name), all, loaded[n].truth));
     }
     std::map<std::string, std::vector<const cad::EvaluatedCase*>> groups;
@@ -615,7 +651,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         "group", "scans", ">=6 mm", "5-6 mm", ">=10 mm", "plain", "dense", "submerged", "coated",
         "hidden", "FP", "before", "reduced", "|d|", "95 %");
     // Without the classifier a candidate passes (1) or does not (0).
-    const double point = method.classifier ? model.operatingPoint : 0.5;
+    const double point = usesClassifier(arguments) ? model.operatingPoint : 0.5;
     nlohmann::ordered_json report{{"model", model.name},
                                   {"trained_on", model.trainedOn},
                                   {"notes", frocNotes},
@@ -683,7 +719,7 @@ CLI::Validator modelLine(std::size_t longest) {
         [longest](const std::string& text) {
             return cad::isModelLine(text, longest)
                        ? std::string()
-                       : fmt::format("it must be one line of at most {} bytes", longest);
+                       : fmt::format("it must be one line of UTF-8, of at most {} bytes", longest);
         },
         "");
 }
@@ -718,7 +754,8 @@ Command addCad(CLI::App& program) {
         "cad", "Train or calibrate polyp detection, or see how well it does.");
     command->require_subcommand(1);
     CLI::App* train = command->add_subcommand(
-        "train", "Learn a model from five or more prepared cases whose polyps are known.");
+        "train",
+        "Learn a model from prepared cases of five studies or more, whose polyps are known.");
     addCases(*train, *forTrain);
     addModel(*train, *forTrain, "What the model is called (default: cases)",
              "What it was trained on and what that means, for a reader (default: cases that "
@@ -762,7 +799,8 @@ Command addCad(CLI::App& program) {
     evaluate->footer(columnsHelp);
     addCases(*evaluate, *forEvaluate);
     evaluate->add_option("--model", forEvaluate->model, "In place of the built-in model")
-        ->type_name("FILE.json");
+        ->type_name("FILE.json|built-in")
+        ->check(checkModelFile);
     evaluate
         ->add_option(
             "--report", forEvaluate->report,

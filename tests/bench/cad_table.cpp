@@ -4,6 +4,7 @@
 // strip a polyp has. usage: cad_table STORE CASE [TRUTH.json | - [CLUSTERS.png]]
 #include "cad/biopsy_image.h"
 #include "cad/detect.h"
+#include "cad/examined_colon.h"
 #include "cad/lesion_features.h"
 #include "cad/strip_raster.h"
 #include "cad/truth.h"
@@ -18,6 +19,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -141,22 +143,25 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
         TRY(pipeline::readColon(source, {source.find(store::product::quality).has_value(),
                                          source.find(store::product::cleansed).has_value(),
                                          source.find(store::product::flatMap).has_value()}));
-    const cad::PreparedColon colon = inputs.colon();
     const cad::CadModel model =
         TRY(cad::modelOfText(std::string(cad::builtInModelText()), "the built-in model"));
     const double start = milliseconds();
-    const auto evidence =
-        timed("samples, shapes and rays", [&] { return cad::gatherEvidence(colon, {}); });
+    const auto examined = timed("samples, shapes and rays", [&] {
+        return std::make_unique<const cad::ExaminedColon>(inputs.colon(), cad::EvidenceOptions());
+    });
+    const cad::PreparedColon& colon = examined->colon();
+    const cad::WallEvidence& evidence = examined->evidence();
+    std::vector<cad::Candidate> residue;
     auto candidates = timed("candidates and their features", [&] {
-        return cad::findCandidates(colon, evidence, &model.texture, {}, &model);
+        return cad::findCandidates(colon, evidence, &model.texture, {}, &model, &residue);
     });
     const auto before =
         std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf < 0; });
     const auto levels = std::ptrdiff_t(candidates.size()) - before;
     const auto all = clusters ? candidates : std::vector<cad::Candidate>();
     const auto findings = timed("places weighed, and findings", [&] {
-        cad::weigh(candidates, model, {});
-        return cad::findingsOf(colon, evidence, candidates, model);
+        cad::weigh(candidates, model);
+        return cad::findingsOf(colon, evidence, candidates, model, residue);
     });
     std::printf("%zu samples, %zd candidates, %zd at other levels, %zu findings: %.2f s in all\n",
                 evidence.rays.size(), before, levels, findings.findings.size(),

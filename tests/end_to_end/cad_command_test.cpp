@@ -318,7 +318,7 @@ TEST_F(CadCommand, AScanOrStudyThatWasLearntFromIsKnownUnderAnyName) {
     // A study is left out as one: two scans of it are one of the five parts.
     const auto few = learn({name(3), name(4), name(5), "visit-supine", "visit-prone"});
     EXPECT_EQ(few.exitCode, 1);
-    EXPECT_NE(few.err.find("studies"), std::string::npos) << few.err;
+    EXPECT_NE(few.err.find("the 5 cases are of 4 studies"), std::string::npos) << few.err;
     EXPECT_FALSE(fs::exists(model));
     const auto learnt = learn({name(2), name(3), name(4), name(5), "visit-supine"});
     ASSERT_EQ(learnt.exitCode, 0) << learnt.err;
@@ -339,6 +339,15 @@ TEST_F(CadCommand, WhatTellsNothingApartIsNoModel) {
     EXPECT_EQ(learnt.exitCode, 1);
     EXPECT_NE(learnt.err.find("nothing was learnt"), std::string::npos) << learnt.err;
     EXPECT_FALSE(fs::exists(model));
+}
+
+// A model whose text nobody could read again.
+TEST_F(CadCommand, AModelsNameIsText) {
+    const TemporaryFolder out;
+    const auto named = haustra(with(
+        training(), {"--model", out.path() / "model.json", "--name", std::string(100, '\xe9')}));
+    EXPECT_EQ(named.exitCode, 2);
+    EXPECT_NE(named.err.find("UTF-8"), std::string::npos) << named.err;
 }
 
 TEST_F(CadCommand, PolypsOfOneStudyAloneTeachNothing) {
@@ -408,8 +417,8 @@ TEST_F(CadCommand, RefusesFilesThatItCannotReadOrWrite) {
     const auto holds = [](const std::string& text, const std::string& words) {
         return text.find(words) != std::string::npos;
     };
-    EXPECT_PRED2(holds, refused({"--model", folder}, 1), "this is a folder, not a file");
-    EXPECT_PRED2(holds, refused({"--model", folder + "/none"}, 1), "No such file");
+    for (const std::string& none : {folder, folder + "/none"})
+        EXPECT_PRED2(holds, refused({"--model", none}, 2), "neither a file nor the word built-in");
     const std::string noText = refused({"--model", picture}, 1);
     EXPECT_PRED2(holds, noText, "\\x89");
     EXPECT_TRUE(std::ranges::all_of(noText, [](char c) {

@@ -25,7 +25,6 @@ using tests::lumenMm;
 
 cad::DetectOptions shapeAlone(int threads = 2) {
     cad::DetectOptions options;
-    options.method.texture = false;
     options.threads = threads;
     return options;
 }
@@ -183,8 +182,8 @@ TEST(Detect, OtherLevelsOfWhatIsNotWorthTheLookNeedNotBeMeasured) {
     EXPECT_GT(levels(some), 0);
     EXPECT_LT(levels(some), levels(all)) << "else nothing is saved";
     EXPECT_EQ(all.size() - std::size_t(levels(all)), some.size() - std::size_t(levels(some)));
-    cad::weigh(all, model, {});
-    cad::weigh(some, model, {});
+    cad::weigh(all, model);
+    cad::weigh(some, model);
     ASSERT_EQ(all.size(), some.size());
     for (std::size_t n = 0; n < all.size(); ++n) {
         EXPECT_EQ(all[n].probability, some[n].probability);
@@ -239,8 +238,9 @@ TEST(Detect, AFeatureTellsBubblesInside) {
     }
     const auto crumbly = features(0), beside = features(1);
     EXPECT_GT(crumbly[cad::featureNumber("dip_p90")], crumbly[cad::featureNumber("dip_mean")]);
-    for (const char* name : {"dip_mean", "dip_p90", "dip_raw"}) {
-        const std::size_t f = cad::featureNumber(name);
+    for (const auto [f] :
+         std::initializer_list<cad::FeatureName>{"dip_mean", "dip_p90", "dip_raw"}) {
+        const std::string_view name = cad::featureNames[f];
         // In wall minus fat; noise is none. The wall's own end is no dip.
         EXPECT_LT(solid[f], 0.1) << name;
         EXPECT_LT(other[f], 0.1) << name;
@@ -478,14 +478,14 @@ TEST(Detect, FeaturesOfAxisAndRegionTakeThemFromTheFlatMap) {
     // The bump on the ball's side points to the axis, which a map has on its outer side instead,
     // far from the rectum.
     BallColon ball;
-    const auto feature = [&](std::string_view name) -> double {
+    const auto feature = [&](cad::FeatureName name) -> double {
         auto colon = ball.colon();
         colon.pieces = {{ColonPart::rectum, {0, 0, 0}, 15.0}, {ColonPart::cecum, {0, 15, 0}, 5.0}};
         const auto candidates =
             cad::findCandidates(colon, cad::gatherEvidence(colon, {}), nullptr, {});
         for (const cad::Candidate& each : candidates)
             if (glm::distance(each.lesion.centreMm, bumps[1].centreMm) < 4.0)
-                return each.features[cad::featureNumber(name)];
+                return each.features[name.number];
         return NAN;
     };
     EXPECT_GT(feature("toward_axis"), 0.95);

@@ -304,8 +304,9 @@ TEST(Model, WhatDoesNotRiseIsNothing) {
     ASSERT_TRUE(cad::checkNetworks(model.networks, cad::featureCount));
     cad::FeatureVector features{};
     // Above a soap film, or above the wall around continued: either will do.
-    for (const char* name : {"height_mm", "lift_top"}) {
-        float& height = features[cad::featureNumber(name)];
+    for (const std::size_t number :
+         {cad::featureNumber("height_mm"), cad::featureNumber("lift_top")}) {
+        float& height = features[number];
         for (const float mm : {-2.0f, 0.0f, 0.49f}) {
             height = mm;
             EXPECT_EQ(model.probability(features), 0.0);
@@ -351,14 +352,12 @@ TEST(Model, ALittleLessDenseThanTheWallTellsNothing) {
     cad::FeatureVector features{};
     features.fill(-0.1f);
     const cad::FeatureVector weighed = cad::asDenseAsTheWall(features);
-    const auto gained = [&](std::string_view name) {
-        return weighed[cad::featureNumber(name)] - features[cad::featureNumber(name)];
-    };
-    for (const std::string_view name : {"density_median", "density_p90", "density_core",
-                                        "peak_median", "peak_p90", "peak_over_ring"})
-        EXPECT_NEAR(gained(name), 0.1f, 1e-6f) << name;
-    for (const std::string_view name : {"height_mm", "density_spread", "peak_spread", "dip_mean"})
-        EXPECT_EQ(gained(name), 0.0f) << name;
+    using Names = std::initializer_list<cad::FeatureName>;
+    for (const auto [n] : Names{"density_median", "density_p90", "density_core", "peak_median",
+                                "peak_p90", "peak_over_ring"})
+        EXPECT_NEAR(weighed[n] - features[n], 0.1f, 1e-6f) << cad::featureNames[n];
+    for (const auto [n] : Names{"height_mm", "density_spread", "peak_spread", "dip_mean"})
+        EXPECT_EQ(weighed[n], features[n]) << cad::featureNames[n];
 }
 
 TEST(Calibration, FindsTheLogisticThatDrewTheTruths) {

@@ -149,13 +149,10 @@ TEST(ResidueFilm, IsNotToldWhereNoTaggingIsKnown) {
 }
 
 TEST(ResidueFilm, OnTheBareWallIsNoCandidateAndOnAPolypTakesNothingAway) {
-    cad::DetectOptions options;
-    options.method.texture = false;
     const auto candidatesAtTheTop = [&](const CoatedColon& coated) {
         const auto evidence = cad::gatherEvidence(coated.colon(), {});
         std::vector<cad::Candidate> residue;
-        auto found =
-            cad::findCandidates(coated.colon(), evidence, nullptr, options, nullptr, &residue);
+        auto found = cad::findCandidates(coated.colon(), evidence, nullptr, {}, nullptr, &residue);
         for (auto* some : {&found, &residue})
             std::erase_if(*some, [](const cad::Candidate& c) {
                 return c.lesion.topMm.z < 8.0 || !cad::rises(c.features);

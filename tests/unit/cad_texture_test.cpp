@@ -155,16 +155,16 @@ TEST(Detect, TextureFindsADenseCoreThatShapeAloneDoesNotTellFromOthers) {
     cad::TrueLesion lesion;
     lesion.positionMm = lesion.wallMm = dense;
     lesion.diameterMm = 2.0 * tests::bumps[0].radiusMm, lesion.kind = "sessile";
-    const auto examples = cad::textureExamples(colon, {}, {lesion});
+    const auto evidence = cad::gatherEvidence(colon, {});
+    const auto examples = cad::textureExamples(evidence, colon.flat, {lesion});
     ASSERT_FALSE(examples.polyps.empty());
     const cad::TextureModel texture = cad::learnTexture(examples.all, examples.polyps);
-    cad::DetectOptions options;
-    options.method.shape = false;
-    const auto evidence = cad::gatherEvidence(colon, {});
-    const auto candidates = cad::findCandidates(colon, evidence, &texture, options);
+    auto candidates = cad::findCandidates(colon, evidence, &texture, {});
+    std::erase_if(candidates, [](const cad::Candidate& candidate) {
+        return candidate.lesion.patch.by != cad::Generator::texture;
+    });
     ASSERT_FALSE(candidates.empty());
     for (const cad::Candidate& candidate : candidates) {
-        EXPECT_EQ(candidate.lesion.patch.by, cad::Generator::texture);
         EXPECT_LT(glm::distance(candidate.lesion.centreMm, dense), 4.0);
     }
 }

@@ -107,9 +107,7 @@ TEST(FindingPaint, AFlatBodyIsTissueAndColouredWithoutHoles) {
                                      spacingMm);
                 const auto colon = ball.colon();
                 const auto evidence = cad::gatherEvidence(colon, {});
-                cad::DetectOptions shapeAlone;
-                shapeAlone.method.texture = false;
-                auto candidates = cad::findCandidates(colon, evidence, nullptr, shapeAlone);
+                auto candidates = cad::findCandidates(colon, evidence, nullptr, {});
                 std::erase_if(candidates, [&](const cad::Candidate& c) {
                     return glm::dot(c.lesion.topMm, way) < 0.85 * lumenMm;
                 });
@@ -124,9 +122,15 @@ TEST(FindingPaint, AFlatBodyIsTissueAndColouredWithoutHoles) {
                         return paint.at(evidence.samples.mesh.vertices[v],
                                         -glm::dvec3(evidence.shapes[v].intoWall)) == 0;
                     };
-                    const std::set<std::uint32_t> rim(lesion.rim.begin(), lesion.rim.end());
-                    for (const std::uint32_t v : lesion.patch.samples)
-                        EXPECT_TRUE(colouredAt(v) || rim.contains(v));
+                    const std::set<std::uint32_t> patch(lesion.patch.samples.begin(),
+                                                        lesion.patch.samples.end());
+                    const auto isRim = [&](std::uint32_t v) {
+                        return std::ranges::any_of(
+                            evidence.samples.around(v),
+                            [&](std::uint32_t next) { return !patch.contains(next); });
+                    };
+                    for (const std::uint32_t v : patch)
+                        EXPECT_TRUE(colouredAt(v) || isRim(v));
                     for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); v += 7) {
                         const double mm =
                             glm::distance(evidence.samples.mesh.vertices[v], lesion.topMm);

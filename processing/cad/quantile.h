@@ -1,10 +1,19 @@
-// The middle of some numbers.
+// Quantiles of some numbers.
 #pragma once
 
 #include <algorithm>
 #include <vector>
 
 namespace haustra::cad {
+
+/// Beneath or at which `share` of them lie, 0…1: the smallest of 0, the greatest of 1. Reorders
+/// them. Of one at least. O(n).
+template <class T>
+T quantileOf(std::vector<T>& values, double share) {
+    const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
 
 /// The upper one of the two middle ones where they are even in number; reorders them. Of one at
 /// least. O(n).
