@@ -62,6 +62,9 @@ void declare(CLI::App& app, Arguments& a) {
         "Pictures and latencies.json go to --out. client/SCRIPT.md describes every action.\n"
         "Exit codes: 0 done, 1 failed (one line on stderr says what and where), 2 wrong usage.");
     app.set_version_flag("--version", software);
+    app.failure_message([](const CLI::App*, const CLI::Error& error) {
+        return "haustra-client: " + std::string(error.what()) + " (see haustra-client --help)\n";
+    });
     app.option_defaults()->always_capture_default(false);
     app.add_option("server", a.server,
                    "HOST, HOST:PORT or [IPV6]:PORT; the port is " +
@@ -141,7 +144,7 @@ int failed(const Error& error) {
     return exitFailed;
 }
 int wrongUsage(const std::string& message) {
-    std::cerr << "haustra-client: " << message << "\nTry haustra-client --help.\n";
+    std::cerr << "haustra-client: " << message << " (see haustra-client --help)\n";
     return exitUsage;
 }
 
@@ -171,6 +174,8 @@ int listCases(const link::ConnectionOptions& options, std::chrono::milliseconds 
     tellFirstUse(session, options);
     for (const std::string& name : session.caseNames())
         std::cout << name << "\n";
+    if (!std::cout.flush())
+        return failed({ErrorKind::io, "it cannot be written", "standard output"});
     return exitDone;
 }
 

@@ -25,8 +25,10 @@ Result<std::filesystem::path> defaultReaderFile() {
 }
 
 Result<std::string> readerNameIn(const std::filesystem::path& file) {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) {
+    // An empty one is what a full disk has left.
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(file, error);
+    if (error == std::errc::no_such_file_or_directory || (!error && bytes == 0)) {
         TRY(link::writePrivateFile(file, randomKey() + "\n"));
     }
     std::ifstream in(file);

@@ -82,8 +82,8 @@ Result<void> runList(const fs::path& folder) {
                    position.empty() ? "" : "  " + position);
         if (const std::string line = trustOf(store, name); !line.empty())
             fmt::print("    {}\n", line);
-        const auto products =
-            store.openCase(name).and_then([](const auto& opened) { return opened.products(); });
+        const auto opened = store.openCase(name);
+        const auto products = opened.and_then([](const auto& of) { return of.products(); });
         if (!products) {
             fmt::print("    {}\n", describe(products.error()));
             continue;
@@ -91,9 +91,10 @@ Result<void> runList(const fs::path& folder) {
         for (const store::ProductEntry& entry : *products) {
             std::error_code missing;
             const auto bytes = fs::file_size(store.folder() / "cases" / name / entry.file, missing);
-            fmt::print("    {:<14} {:>10}  {}\n", entry.product,
+            const auto header = opened->attributes(entry.product);
+            fmt::print("    {:<14} {:>10}  {}{}\n", entry.product,
                        missing ? "missing" : fmt::format("{:.1f} MB", double(bytes) / 1e6),
-                       entry.file);
+                       entry.file, missing || header ? "" : "  " + header.error().message);
         }
     }
     return {};

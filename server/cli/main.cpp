@@ -49,6 +49,8 @@ int runProgram(int argc, char** argv) {
             if (!command.app->parsed()) continue;
             const auto done = command.run();
             if (!done) return failed(haustra::describe(done.error()));
+            if (std::fflush(stdout) != 0 || std::ferror(stdout))
+                return failed("standard output: it cannot be written");
             if (const auto lost = haustra::store::firstLostFile())
                 return failed(lost->string() +
                               ": the product was cut short, or its disk fails, while it was read; "

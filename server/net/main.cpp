@@ -103,17 +103,21 @@ void addOptions(CLI::App& program, Arguments& arguments) {
 Result<void> serve(const Arguments& arguments) {
     auto server = TRY(haustra::net::Server::create(arguments.server));
     const auto& address = server->address();
-    std::printf("listening on %s\ncertificate SHA-256 %s\nrendering with %s\n",
-                toString(address).c_str(), server->fingerprint().c_str(),
-                server->renderer().c_str());
-    std::fflush(stdout);
     if (!arguments.portFile.empty()) {
         const std::string text = std::to_string(address.port) + "\n";
         const fs::path folder =
             arguments.portFile.has_parent_path() ? arguments.portFile.parent_path() : fs::path(".");
-        TRY(haustra::store::writeDurably(folder, arguments.portFile.filename(),
-                                         {std::as_bytes(std::span(text))}));
+        auto written = haustra::store::writeDurably(folder, arguments.portFile.filename(),
+                                                    {std::as_bytes(std::span(text))});
+        if (!written) {  // it names the file that would have been renamed
+            written.error().place = arguments.portFile.string();
+            return written;
+        }
     }
+    std::printf("listening on %s\ncertificate SHA-256 %s\nrendering with %s\n",
+                toString(address).c_str(), server->fingerprint().c_str(),
+                server->renderer().c_str());
+    std::fflush(stdout);
     server->run();
     return {};
 }

@@ -5,6 +5,7 @@
 
 #include <charconv>
 #include <csignal>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -23,7 +24,7 @@ namespace {
 
 using asio::ip::tcp;
 
-// Connections that have not said hello yet may come on top of the sessions.
+// Connections whose handshake is not done yet may come on top of the sessions.
 constexpr std::size_t maxStrangers = 64;
 constexpr std::chrono::milliseconds acceptPause{100};  // where no file descriptor is left
 constexpr std::chrono::milliseconds stopPatience{3000};
@@ -123,6 +124,8 @@ struct Server::Impl {
     std::optional<session::Services> services;
 
     std::set<std::shared_ptr<Connection>> connections;
+    // Of these, whose handshake is not done, the oldest first.
+    std::map<session::SessionId, std::shared_ptr<Connection>> strangers;
     session::SessionId lastId = 0;
     int sessions = 0;  // admitted connections
     bool stopping = false;
@@ -200,18 +203,27 @@ void Server::Impl::accept() {
 }
 
 void Server::Impl::serve(tcp::socket socket) {
-    if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) return;
-    const auto connection = std::make_shared<Connection>(std::move(socket), tls, *services,
-                                                         ++lastId, Connection::Patience{});
+    if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) {
+        if (strangers.empty()) return;
+        // Who has said nothing for longest makes room for who may say something.
+        const auto oldest = strangers.extract(strangers.begin());
+        oldest.mapped()->stop();
+    }
+    const session::SessionId id = ++lastId;
+    const auto connection =
+        std::make_shared<Connection>(std::move(socket), tls, *services, id, Connection::Patience{});
     connections.insert(connection);
+    strangers.emplace(id, connection);
     const auto admitted = std::make_shared<bool>(false);
-    const auto admit = [this, admitted] {
+    const auto admit = [this, admitted, id] {
+        strangers.erase(id);
         *admitted = sessions < options.maxSessions;
         if (*admitted) ++sessions;
         return *admitted;
     };
-    connection->start(admit, [this, admitted, connection] {
+    connection->start(admit, [this, admitted, connection, id] {
         if (*admitted) --sessions;
+        strangers.erase(id);
         connections.erase(connection);
         if (stopping && connections.empty()) stopDeadline.cancel();
     });

@@ -2,7 +2,12 @@
 
 #include "records/statement.h"
 
+#include <string>
+#include <system_error>
+
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 namespace haustra::records {
 namespace {
@@ -22,6 +27,19 @@ Result<void> run(sqlite3* database, const char* sql, const char* doing) {
 }
 
 Result<Database> openDatabase(const std::filesystem::path& file, const char* schema) {
+    // Notes and readers' names are no business of other users of the machine. SQLite's own files
+    // beside it have its permissions. It is not opened where it is there: to close it would take
+    // off the locks of this process.
+    constexpr unsigned ownersAndGroups = 0640;
+    const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, ownersAndGroups);
+    if (made >= 0) {
+        ::close(made);
+    } else {
+        std::error_code ignored;  // another user's
+        std::filesystem::permissions(file, std::filesystem::perms::others_all,
+                                     std::filesystem::perm_options::remove, ignored);
+    }
+    const std::string preparing = "prepare " + file.string();
     sqlite3* opened = nullptr;
     const int code =
         sqlite3_open_v2(file.c_str(), &opened,
@@ -29,9 +47,8 @@ Result<Database> openDatabase(const std::filesystem::path& file, const char* sch
     Database database(opened);
     if (code != SQLITE_OK) return failedSql(opened, "open " + file.string());
     sqlite3_busy_timeout(opened, busyMs);
-    TRY(run(opened, "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;",
-            "prepare the records"));
-    TRY(run(opened, schema, "prepare the records"));
+    TRY(run(opened, "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;", preparing.c_str()));
+    TRY(run(opened, schema, preparing.c_str()));
     return database;
 }
 

@@ -475,6 +475,30 @@ TEST_F(PreparedPhantom, TheListNamesCasesProductsAndSizes) {
     }
 }
 
+TEST_F(PreparedPhantom, TheListSaysWhatIsDamaged) {
+    const fs::path folder = fs::path(store()) / "cases" / "p";
+    const std::string ct = opened().find("ct")->file;
+    // A link to what other tests read, too.
+    fs::copy(folder / ct, folder / "copy");
+    fs::rename(folder / "copy", folder / ct);
+    fs::resize_file(folder / ct, fs::file_size(folder / ct) / 2);
+    const auto outcome = haustra({"list", "--store", store()});
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_NE(outcome.out.find(ct + "  the product is damaged"), std::string::npos) << outcome.out;
+    const std::string surface = opened().find("surface")->file;
+    EXPECT_NE(outcome.out.find(surface + "\n"), std::string::npos) << outcome.out;
+}
+
+TEST_F(PreparedPhantom, AListThatIsLostOnTheWayIsAFailure) {
+    const auto runInShell = [&](const std::string& to) {
+        const std::string command = tests::programPath("haustra").string() + " list --store " +
+                                    store() + " > " + to + " 2> /dev/null";
+        return WEXITSTATUS(std::system(command.c_str()));
+    };
+    EXPECT_EQ(runInShell("/dev/null"), 0);
+    EXPECT_EQ(runInShell("/dev/full"), 1);
+}
+
 TEST_F(PreparedPhantom, TheTruthScoresNearlyAsTheTruth) {
     const auto outcome = haustra(
         {"evaluate", "p", "--truth", truth(), "--store", store(), "--report", file("e.json")});

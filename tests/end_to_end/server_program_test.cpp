@@ -2,6 +2,10 @@
 #include "end_to_end/server_process.h"
 #include "end_to_end/server_test_client.h"
 
+#include <vector>
+
+#include <asio/io_context.hpp>
+#include <asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
 
 namespace haustra::tests {
@@ -37,6 +41,26 @@ TEST(Server, FullIsSaidAndStoppingIsClean) {
     EXPECT_EQ(again.log().find(smallCaseName), std::string::npos);
 }
 
+// Connections that say nothing are waited for, and lock nobody out meanwhile.
+TEST(Server, WhoSaysNothingMakesRoomForWhoDoes) {
+    const TemporaryFolder folder;
+    makeSmallStore(folder.path());
+    ServerProcess server(folder.path(), {"--max-sessions", "2"});
+    asio::io_context io;
+    std::vector<asio::ip::tcp::socket> silent;
+    for (int n = 0; n < 100; ++n)
+        silent.emplace_back(io).connect({asio::ip::address_v4::loopback(), server.port()});
+    TestClient first(server.port()), second(server.port());
+    EXPECT_TRUE(first.hello());
+    EXPECT_TRUE(second.hello());
+    // The others are still waited for.
+    silent.back().non_blocking(true);
+    char byte = 0;
+    asio::error_code error;
+    silent.back().read_some(asio::buffer(&byte, 1), error);
+    EXPECT_EQ(error, asio::error::would_block);
+}
+
 TEST(Server, WrongUsageAndFailureHaveTheirExitCodes) {
     const TemporaryFolder folder;
     EXPECT_EQ(runProgram("haustra-server", {}).exitCode, 2);
@@ -52,6 +76,14 @@ TEST(Server, WrongUsageAndFailureHaveTheirExitCodes) {
     const Outcome missing = runProgram("haustra-server", {"--store", folder.path() / "none"});
     EXPECT_EQ(missing.exitCode, 1);
     EXPECT_FALSE(missing.err.empty());
+    makeSmallStore(folder.path());
+    const std::string portFile = folder.path() / "none" / "port";
+    const Outcome unwritten =
+        runProgram("haustra-server",
+                   {"--store", folder.path(), "--listen", "127.0.0.1:0", "--port-file", portFile});
+    EXPECT_EQ(unwritten.exitCode, 1);
+    EXPECT_TRUE(unwritten.out.empty()) << unwritten.out;
+    EXPECT_NE(unwritten.err.find(portFile + ":"), std::string::npos) << unwritten.err;
     const Outcome help = runProgram("haustra-server", {"--help"});
     EXPECT_EQ(help.exitCode, 0);
     for (const char* option :

@@ -45,6 +45,24 @@ protected:
     tests::TemporaryFolder folder_;
 };
 
+// Notes and readers' names.
+TEST_F(Bookmarks, AreNotForOtherUsersOfTheMachine) {
+    namespace fs = std::filesystem;
+    const fs::path file = folder_.path() / "records.sqlite3";
+    const auto others = [](const fs::path& of) {
+        return fs::status(of).permissions() & fs::perms::others_all;
+    };
+    const auto check = [&] {
+        BookmarkStore store = open();
+        ASSERT_TRUE(store.add({bookmark("a", 1)}));
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            EXPECT_EQ(others(entry.path()), fs::perms::none) << entry.path();
+    };
+    check();
+    fs::permissions(file, fs::perms::others_read, fs::perm_options::add);  // of an older Haustra
+    check();
+}
+
 TEST_F(Bookmarks, AreThereAfterReopeningInTheirOrder) {
     {
         BookmarkStore store = open();
@@ -168,6 +186,8 @@ TEST_F(Bookmarks, AFileThatIsNoDatabaseIsRefused) {
     const auto store = BookmarkStore::open(folder_.path() / "records.sqlite3");
     ASSERT_FALSE(store);
     EXPECT_EQ(store.error().kind, ErrorKind::io);
+    EXPECT_NE(describe(store.error()).find("records.sqlite3"), std::string::npos)
+        << describe(store.error());
     EXPECT_FALSE(BookmarkStore::open(folder_.path() / "no" / "such" / "folder"));
 }
 
