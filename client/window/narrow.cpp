@@ -35,9 +35,8 @@ QSize NarrowButton::hintFor(const QString& words) const {
 void NarrowButton::fit() {
     const int around = QToolButton::sizeHint().width() - fontMetrics().horizontalAdvance(text());
     const int room = width() - around;
-    const QString words = fontMetrics().horizontalAdvance(whole_) <= room
-                              ? whole_
-                              : fontMetrics().elidedText(whole_, Qt::ElideRight, room);
+    QString words = fontMetrics().elidedText(whole_, Qt::ElideRight, room);
+    if (!words.startsWith(least_)) words = least_;
     if (words != text()) setText(words);
 }
 

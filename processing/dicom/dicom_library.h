@@ -9,7 +9,8 @@ namespace haustra::dicom {
 /// this first. Thread-safe.
 void prepareDicomLibrary();
 
-/// How often DCMTK has warned in this thread. It writes none of that anywhere.
-std::size_t libraryWarnings();
+/// How often DCMTK's JPEG decoders have made pixels up in this thread, as data is damaged. They go
+/// on where they can, and tell it to the log alone.
+std::size_t jpegDamages();
 
 }  // namespace haustra::dicom

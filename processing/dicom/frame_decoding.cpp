@@ -4,6 +4,7 @@
 #include "dicom/jpeg2000.h"
 #include "dicom/jpeg_header.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -30,8 +31,8 @@ std::size_t littleEndian32(const std::uint8_t* at) {
            std::size_t(at[3]) << 24;
 }
 
-/// Whether a run-length segment (PS3.5 G.3) makes so many bytes, and ends then but for a byte that
-/// makes its length even.
+/// Whether a run-length segment (PS3.5 G.3) makes so many bytes, and holds nothing behind them but
+/// zeros and no-operations that fill it up.
 bool rleSegmentMakes(std::span<const std::uint8_t> segment, std::size_t wanted) {
     std::size_t made = 0, at = 0;
     while (made < wanted && at < segment.size()) {
@@ -43,7 +44,9 @@ bool rleSegmentMakes(std::span<const std::uint8_t> segment, std::size_t wanted) 
         else
             ++at;
     }
-    return made == wanted && at <= segment.size() && segment.size() - at <= 1;
+    return made == wanted && at <= segment.size() &&
+           std::ranges::all_of(segment.subspan(at),
+                               [](std::uint8_t byte) { return byte == 0 || byte == 128; });
 }
 
 /// An RLE frame starts with 16 numbers: how many segments, and where each begins (PS3.5 G.5).
@@ -103,14 +106,25 @@ public:
                             " of " + std::to_string(needed) + " bytes")
                                .c_str());
         }
-        // Some writers pad, but not by a row.
-        if (pixelData_->getLength() >= needed + std::size_t(image_.matrix.x) * cellBytes()) {
+        if (!isPadding(needed)) {
             return damaged(("its pixel data holds " + std::to_string(pixelData_->getLength()) +
                             " bytes, where its rows, columns and bits ask for " +
                             std::to_string(needed))
                                .c_str());
         }
         return {};
+    }
+
+    /// Whether what the pixel data holds beyond so many bytes is no picture: less than a row, or
+    /// zeros.
+    bool isPadding(std::size_t needed) {
+        const std::size_t excess = pixelData_->getLength() - needed;
+        if (excess < std::size_t(image_.matrix.x) * cellBytes()) return true;
+        if (excess >= needed) return false;
+        std::vector<Uint8> tail(excess);
+        return pixelData_->getPartialValue(tail.data(), Uint32(needed), Uint32(excess), &cache_)
+                   .good() &&
+               std::ranges::all_of(tail, [](Uint8 byte) { return byte == 0; });
     }
 
     /// HU of one frame; the span is valid until the next call.
@@ -136,16 +150,18 @@ public:
                 return damaged("its run-length segments are damaged, or of another size");
             nextFragment_ = Uint32(range->first);
         }
-        if (fragments_ && isJpeg(syntax_)) TRY(checkJpeg(frame));
+        if (fragments_ && isJpeg(syntax_)) {
+            TRY(checkJpeg(frame));
+            nextFragment_ = Uint32(fragmentsOf(frame)->first);
+        }
         cells_.resize(pixels() + 1);
         OFString colorModel;
-        const std::size_t warned = libraryWarnings();
+        const std::size_t damages = jpegDamages();
         const OFCondition condition = pixelData_->getUncompressedFrame(
             dataset_, Uint32(frame), nextFragment_, cells_.data(),
             Uint32(cells_.size() * sizeof(std::uint16_t)), colorModel, &cache_);
         if (condition.bad()) return damaged(condition.text());
-        // Its decoders go on where they can, and warn.
-        if (libraryWarnings() != warned) return damaged("its compressed data is damaged");
+        if (jpegDamages() != damages) return damaged("its compressed data is damaged");
         const HuTable& hu = table(image_.format, header.rescale);
         if (cellBytes() == 1) {
             const auto* bytes = reinterpret_cast<const std::uint8_t*>(cells_.data());
@@ -191,7 +207,7 @@ private:
         Uint8* bytes = nullptr;
         if (fragments_->getItem(table, 0).bad() || !table || table->getLength() != 4 * frames ||
             table->getUint8Array(bytes).bad() || !bytes) {
-            return std::nullopt;
+            return isJpeg(syntax_) ? streamOf(n) : std::nullopt;
         }
         FragmentRange range;
         const std::uint64_t begin = littleEndian32(bytes + 4 * n);
@@ -208,6 +224,25 @@ private:
         return range.first > 0 ? std::optional(range) : std::nullopt;
     }
 
+    /// The fragments of one JPEG stream, where no table says where frames begin: by its first
+    /// bytes.
+    std::optional<FragmentRange> streamOf(unsigned long frame) {
+        FragmentRange range;
+        unsigned long streams = 0;
+        for (unsigned long item = 1; item < fragments_->card(); ++item) {
+            DcmPixelItem* fragment = nullptr;
+            Uint8* bytes = nullptr;
+            if (fragments_->getItem(fragment, item).bad() || !fragment) return std::nullopt;
+            const bool begins = fragment->getLength() >= 2 &&
+                                fragment->getUint8Array(bytes).good() && bytes &&
+                                bytes[0] == 0xff && bytes[1] == 0xd8;
+            streams += begins;
+            if (begins && streams == frame + 1) range.first = item;
+            if (streams == frame + 1) range.last = item + 1;
+        }
+        return streams == image_.frames.size() ? std::optional(range) : std::nullopt;
+    }
+
     /// The compressed bytes of one frame, its fragments joined.
     Result<std::vector<std::uint8_t>> frameBytes(int frame) {
         const auto range = fragmentsOf(frame);
@@ -216,10 +251,9 @@ private:
         for (unsigned long n = range->first; n < range->last; ++n) {
             DcmPixelItem* item = nullptr;
             Uint8* data = nullptr;
-            if (fragments_->getItem(item, n).bad() || !item || item->getUint8Array(data).bad() ||
-                !data) {
+            if (fragments_->getItem(item, n).good() && item && item->getLength() == 0) continue;
+            if (!item || item->getUint8Array(data).bad() || !data)
                 return damaged("a compressed fragment is missing or truncated");
-            }
             bytes.insert(bytes.end(), data, data + item->getLength());
         }
         return bytes;

@@ -51,11 +51,11 @@ std::string printable(std::string string) {
 
 /// Of a text the whole text must be a number: DCMTK reads "1,5" as 1.
 std::optional<double> numberIn(std::string_view text) {
-    constexpr std::string_view padding(" \0", 2);
+    constexpr std::string_view padding(" \t\r\n\0", 5);
     const std::size_t begin = text.find_first_not_of(padding);
     if (begin == std::string_view::npos) return std::nullopt;
     text = text.substr(begin, text.find_last_not_of(padding) + 1 - begin);
-    if (text.starts_with('+')) text.remove_prefix(1);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;

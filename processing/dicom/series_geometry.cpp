@@ -139,8 +139,8 @@ Result<void> checkHoles(const std::vector<Slice>& slices, const Column& column) 
     return {};
 }
 
-/// A slice between two that are as far apart as slices are elsewhere is another's: a spacing that
-/// changes does not do so for one slice.
+/// A slice between two that are as far apart as slices are before and behind is another's: a
+/// spacing that changes does not do so for one slice.
 Result<void> checkStrays(const std::vector<Slice>& slices, const Column& column) {
     if (column.gaps() < 4) return {};
     std::vector<double> gaps(column.gaps());
@@ -148,11 +148,9 @@ Result<void> checkStrays(const std::vector<Slice>& slices, const Column& column)
         gaps[k] = column.gap(k);
     const double usual = median(gaps);
     const auto isUsual = [&](double mm) { return std::abs(mm - usual) < 0.1 * usual; };
-    for (std::size_t k = 0; k + 1 < gaps.size(); ++k) {
-        const bool between = isUsual(gaps[k] + gaps[k + 1]);
-        const bool before = k == 0 || isUsual(gaps[k - 1]);
-        const bool after = k + 2 == gaps.size() || isUsual(gaps[k + 2]);
-        if (!between || !before || !after) continue;
+    for (std::size_t k = 1; k + 2 < gaps.size(); ++k) {
+        if (!isUsual(gaps[k] + gaps[k + 1]) || !isUsual(gaps[k - 1]) || !isUsual(gaps[k + 2]))
+            continue;
         const bool nearerBelow = gaps[k] < gaps[k + 1];
         return fail(ErrorKind::badInput,
                     "it lies " + millimetres(std::min(gaps[k], gaps[k + 1])) + " from " +

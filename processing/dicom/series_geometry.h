@@ -45,9 +45,9 @@ struct SliceStack {
 /// Stacks at least one slice, in any order. Fails, naming the slices, where orientation, matrix or
 /// pixel spacing differ, two different slices share a position, a slice is missing (a gap 1.5
 /// times both its neighbours, or 1.5 times the usual one and alone or with one neighbour as wide),
-/// a slice stands between two that are as far apart as the others are, gaps exceed 10 mm, or slices
-/// are displaced sideways other than by a tilt. Gaps that vary without a hole are resampled to the
-/// smallest, or to half the median if that is more. Deterministic; O(n log n).
+/// a slice stands between two that are as far apart as those before and behind, gaps exceed 10 mm,
+/// or slices are displaced sideways other than by a tilt. Gaps that vary without a hole are
+/// resampled to the smallest, or to half the median if that is more. Deterministic; O(n log n).
 Result<SliceStack> stackSlices(const std::vector<Slice>& slices);
 
 }  // namespace haustra::dicom

@@ -3,6 +3,8 @@
 #include "core/files_below.h"
 
 #include <algorithm>
+#include <array>
+#include <fstream>
 #include <map>
 #include <set>
 #include <thread>
@@ -39,19 +41,33 @@ void summarise(Series& series) {
     summary.studyUid = first.studyUid;
     summary.description = first.description;
     summary.matrix = first.matrix;
-    summary.position = first.position;
+    summary.position = PatientPosition::unknown;
+    for (const ImageHeader& image : series.images)
+        if (summary.position == PatientPosition::unknown) summary.position = image.position;
+}
+
+/// A file's ending; none where it is a number, as of a file that is named by its UID.
+std::string endingOf(const fs::path& file) {
+    const std::string ending = file.extension().string();
+    return ending.find_first_not_of(".0123456789") == std::string::npos ? std::string() : ending;
+}
+
+bool holdsNothing(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::array<char, 4096> head{};
+    in.read(head.data(), head.size());
+    return std::ranges::all_of(head, [](char byte) { return byte == 0; });
 }
 
 /// Whether a file that is no DICOM is named as the series' files beside it are, so that it may have
-/// been one: of their ending, or, where they have none, empty.
+/// been one: of their ending, or, where they have none, empty or of zeros.
 bool mayHaveBeenOfIt(const fs::path& stranger, const Series& series) {
     if (stranger.filename().string().starts_with('.')) return false;  // another program's
+    const std::string ending = endingOf(stranger);
     const bool besideAlike = std::ranges::any_of(series.images, [&](const ImageHeader& image) {
-        return image.file.parent_path() == stranger.parent_path() &&
-               image.file.extension() == stranger.extension();
+        return image.file.parent_path() == stranger.parent_path() && endingOf(image.file) == ending;
     });
-    std::error_code unknown;
-    return besideAlike && (!stranger.extension().empty() || fs::file_size(stranger, unknown) == 0);
+    return besideAlike && (!ending.empty() || holdsNothing(stranger));
 }
 
 /// Fails where a file of the series may be lost, or images are not of one examination.
@@ -63,15 +79,20 @@ Result<void> checkWhole(const Series& series, const std::vector<fs::path>& stran
                         "beside it are: it may be a slice that has lost its content",
                         stranger.string());
     const ImageHeader& first = series.images.front();
+    const auto another = [](const char* what, const ImageHeader& image, const ImageHeader& than) {
+        return fail(ErrorKind::badInput,
+                    std::string("it is of the series, but of another ") + what + " than " +
+                        than.file.string(),
+                    image.file.string());
+    };
+    const ImageHeader* placed = nullptr;  // whose position is known
     for (const ImageHeader& image : series.images) {
-        const char* differs = image.studyUid != first.studyUid   ? "study"
-                              : image.position != first.position ? "patient position"
-                                                                 : nullptr;
-        if (differs)
-            return fail(ErrorKind::badInput,
-                        std::string("it is of the series, but of another ") + differs + " than " +
-                            first.file.string(),
-                        image.file.string());
+        if (!image.studyUid.empty() && !first.studyUid.empty() && image.studyUid != first.studyUid)
+            return another("study", image, first);
+        if (image.position == PatientPosition::unknown) continue;
+        if (placed && image.position != placed->position)
+            return another("patient position", image, *placed);
+        if (!placed) placed = &image;
     }
     return {};
 }

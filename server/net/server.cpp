@@ -205,7 +205,7 @@ void Server::Impl::accept() {
 void Server::Impl::serve(tcp::socket socket) {
     if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) {
         if (strangers.empty()) return;
-        // Who has said nothing for longest makes room for who may say something.
+        // Whose handshake has not come for longest makes room for another's.
         const auto oldest = strangers.extract(strangers.begin());
         oldest.mapped()->stop();
     }

@@ -27,17 +27,19 @@ Result<void> run(sqlite3* database, const char* sql, const char* doing) {
 }
 
 Result<Database> openDatabase(const std::filesystem::path& file, const char* schema) {
-    // Notes and readers' names are no business of other users of the machine. SQLite's own files
-    // beside it have its permissions. It is not opened where it is there: to close it would take
-    // off the locks of this process.
+    // Notes and readers' names are no business of other users of the machine. SQLite makes its own
+    // files beside it with its permissions; an older Haustra's may be there. It is not opened where
+    // it is there: to close it would take off the locks of this process.
     constexpr unsigned ownersAndGroups = 0640;
     const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, ownersAndGroups);
     if (made >= 0) {
         ::close(made);
     } else {
-        std::error_code ignored;  // another user's
-        std::filesystem::permissions(file, std::filesystem::perms::others_all,
-                                     std::filesystem::perm_options::remove, ignored);
+        for (const char* part : {"", "-wal", "-shm"}) {
+            std::error_code ignored;  // none, or another user's
+            std::filesystem::permissions(file.string() + part, std::filesystem::perms::others_all,
+                                         std::filesystem::perm_options::remove, ignored);
+        }
     }
     const std::string preparing = "prepare " + file.string();
     sqlite3* opened = nullptr;

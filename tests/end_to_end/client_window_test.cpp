@@ -8,6 +8,7 @@
 #include "reader/overview_map.h"
 #include "temporary_folder.h"
 #include "window/missed_panel.h"
+#include "window/narrow.h"
 #include "window/pane.h"
 #include "window/reader_window.h"
 #include "window/theme.h"
@@ -1513,6 +1514,24 @@ TEST_F(ClientWindow, WhatIsOnScreenIsToldAsLongAsItIs) {
     window_->hide();
     QTest::qWait(600);
     EXPECT_LT(toldIn(800), 100u) << "a window that is hidden shows nothing";
+}
+
+TEST_F(ClientWindow, TheTopLineEndsInAnEllipsisAndKeepsItsFirstWords) {
+    const QString least = QStringLiteral("colon 88 % sure"),
+                  whole = least + QStringLiteral(", 4 places to look at");
+    QWidget line;
+    line.resize(600, 60);
+    NarrowButton button(&line);
+    button.setWords(whole, least);
+    line.show();
+    for (const int wider : {0, 3, 8, 20}) {
+        button.resize(button.minimumSizeHint() + QSize(wider, 0));
+        EXPECT_TRUE(button.text().startsWith(least)) << wider << ' ' << button.text().toStdString();
+        EXPECT_FALSE(button.text() == whole) << wider;
+    }
+    button.resize(button.sizeHint() + QSize(1, 0));
+    EXPECT_EQ(button.text().toStdString(), whole.toStdString());
+    EXPECT_EQ(button.accessibleName().toStdString(), whole.toStdString());
 }
 
 // Docks that are arranged anew pass beneath a mouse that rests: panes are entered, and never left.

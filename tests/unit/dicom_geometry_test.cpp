@@ -143,8 +143,11 @@ TEST(SliceStack, NamesAStraySlice) {
     // A spacing that changes, and one step of another width, are none.
     std::vector<double> depths{0, 2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 18, 20, 22, 24};
     EXPECT_TRUE(stackSlices(slicesAt(depths)));
-    depths = {0, 2, 4, 6, 8, 9.2, 11.2, 13.2, 15.2, 17.2, 19.2};
-    EXPECT_TRUE(stackSlices(slicesAt(depths)));
+    for (const std::vector<double>& sound :
+         {std::vector<double>{0, 2, 4, 6, 8, 9.2, 11.2, 13.2, 15.2, 17.2, 19.2},
+          {0, 1, 2, 4, 6, 8},
+          {0, 2, 4, 6, 7, 8}})
+        EXPECT_TRUE(stackSlices(slicesAt(sound)));
 }
 
 TEST(SliceStack, LeavesOutCopiesOfASlice) {

@@ -137,11 +137,13 @@ TEST(DicomRefusal, SlicesOfSeveralStudiesOrPositions) {
     }
     const TemporaryFolder folder;
     tests::write(folder.path(), patternScan(smallGrid()));
+    tests::set(folder / "0001.dcm", DCM_PatientPosition, "");  // not said is not another
     tests::set(folder / "0007.dcm", DCM_FrameOfReferenceUID, "1.2.3");
     tests::set(folder / "0008.dcm", DCM_LossyImageCompression, "01");
     const auto imported = importSeries(folder.path());
     ASSERT_TRUE(imported) << describe(imported.error());
     ASSERT_EQ(imported->notes.size(), 2u) << "read, and told";
+    EXPECT_EQ(imported->scan.position, PatientPosition::supine);
     EXPECT_NE(imported->notes[0].find("2 frames of reference"), std::string::npos);
     EXPECT_NE(imported->notes[1].find("1 images were compressed with loss"), std::string::npos);
 }
@@ -155,15 +157,19 @@ TEST(DicomRefusal, FilesThatHaveLostTheirContent) {
     ASSERT_TRUE(importSeries(folder.path()));
     std::ofstream(folder / "0024.dcm", std::ios::trunc) << std::string(4000, '\0');
     expectRefused(folder.path(), "0024.dcm", "not a DICOM file");
-    // Without an ending, a file is known by having nothing in it.
-    const TemporaryFolder plain;
+    // Without an ending, or with a number for one, a file is known by having nothing in it.
     tests::write(folder / "new", patternScan(smallGrid()));
-    for (const fs::path& file : filesIn(folder / "new"))
-        fs::copy(file, plain / file.stem());
-    std::ofstream(plain / "README") << "not an image";
-    ASSERT_TRUE(importSeries(plain.path()));
-    std::ofstream(plain / "0024", std::ios::trunc).close();
-    expectRefused(plain.path(), "0024", "not a DICOM file");
+    for (const std::string name : {"", "CT.1.2.3."}) {
+        const TemporaryFolder plain;
+        for (const fs::path& file : filesIn(folder / "new"))
+            fs::copy(file, plain / (name + file.stem().string()));
+        std::ofstream(plain / "README") << "not an image";
+        ASSERT_TRUE(importSeries(plain.path()));
+        for (const std::size_t zeros : {0u, 4000u}) {
+            std::ofstream(plain / (name + "0024"), std::ios::trunc) << std::string(zeros, '\0');
+            expectRefused(plain.path(), name + "0024", "not a DICOM file");
+        }
+    }
 }
 
 TEST(DicomChoice, LinksAreFollowedOnce) {
@@ -194,6 +200,7 @@ TEST(DicomRefusal, NamesTheSliceThatDiffers) {
         {DCM_ImagePositionPatient, "-30,0\\12,5\\-64,75", "no valid Image Position"},
         {DCM_ImagePositionPatient, "1e30\\0\\0", "no valid Image Position"},
         {DCM_RescaleSlope, "1.0HU", "no valid Rescale Slope"},
+        {DCM_RescaleSlope, "+-1", "no valid Rescale Slope"},
         {DCM_ImageOrientationPatient, "0\\1\\0\\1\\0\\0", "orientation"},
         {DCM_ImageOrientationPatient, "1\\0\\0\\1\\0\\0", "not orthogonal"},
         {DCM_ImageOrientationPatient, "2\\0\\0\\0\\1\\0", "not orthogonal"},
@@ -248,6 +255,21 @@ TEST(DicomRefusal, PixelsThatAreNotWhatTheHeaderSays) {
             d.putAndInsertUint16Array(DCM_PixelData, many.data(), many.size());
         },
         "holds 816 bytes");
+    // Zeros that fill it up are no picture.
+    const TemporaryFolder folder;
+    const CtScan scan = patternScan(smallGrid());
+    tests::write(folder.path(), scan);
+    tests::edit(folder / "0005.dcm", [](DcmDataset& d) {
+        const Uint16* pixels = nullptr;
+        unsigned long count = 0;
+        ASSERT_TRUE(d.findAndGetUint16Array(DCM_PixelData, pixels, &count).good());
+        std::vector<Uint16> longer(pixels, pixels + count);
+        longer.resize(count + 100, 0);
+        d.putAndInsertUint16Array(DCM_PixelData, longer.data(), longer.size());
+    });
+    const auto imported = importSeries(folder.path());
+    ASSERT_TRUE(imported) << describe(imported.error());
+    EXPECT_TRUE(std::ranges::equal(imported->scan.hu.voxels(), scan.hu.voxels()));
 }
 
 TEST(DicomRefusal, CompressedPixelsThatAreNotWhatTheHeaderSays) {

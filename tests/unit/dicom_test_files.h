@@ -123,8 +123,10 @@ inline void writeEnhanced(const std::filesystem::path& file, const CtScan& scan)
 /// The bytes of one frame, in one or more fragments.
 using Fragments = std::vector<std::vector<Uint8>>;
 
-/// Replaces a file's pixels by JPEG 2000 codestreams, one a frame, behind an offset table.
-inline void wrapJpeg2000(const std::filesystem::path& file, const std::vector<Fragments>& frames) {
+/// Replaces a file's pixels by compressed streams, one a frame, behind an offset table or an empty
+/// one.
+inline void wrap(const std::filesystem::path& file, const std::vector<Fragments>& frames,
+                 E_TransferSyntax syntax, bool hasTable = true) {
     DcmFileFormat format;
     ASSERT_TRUE(format.loadFile(OFFilename(file.c_str())).good()) << file;
     ASSERT_TRUE(format.loadAllDataIntoMemory().good());
@@ -144,12 +146,15 @@ inline void wrapJpeg2000(const std::filesystem::path& file, const std::vector<Fr
             at += Uint32(item->getLength()) + 8;
         }
     }
-    table->putUint8Array(offsets.data(), static_cast<unsigned long>(offsets.size()));
+    if (hasTable) table->putUint8Array(offsets.data(), static_cast<unsigned long>(offsets.size()));
     delete dataset.remove(DCM_PixelData);
     auto* pixels = new DcmPixelData(DCM_PixelData);
-    pixels->putOriginalRepresentation(EXS_JPEG2000LosslessOnly, nullptr, sequence);
+    pixels->putOriginalRepresentation(syntax, nullptr, sequence);
     ASSERT_TRUE(dataset.insert(pixels, OFTrue).good());
-    ASSERT_TRUE(format.saveFile(OFFilename(file.c_str()), EXS_JPEG2000LosslessOnly).good());
+    ASSERT_TRUE(format.saveFile(OFFilename(file.c_str()), syntax).good());
+}
+inline void wrapJpeg2000(const std::filesystem::path& file, const std::vector<Fragments>& frames) {
+    wrap(file, frames, EXS_JPEG2000LosslessOnly);
 }
 
 /// The fragments of a compressed single-frame file.

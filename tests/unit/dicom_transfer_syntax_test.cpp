@@ -69,10 +69,47 @@ TEST(DicomTransferSyntax, EnhancedMultiFrame) {
     }
 }
 
-TEST(DicomTransferSyntax, EnhancedRefusesFewerGroupsThanFrames) {
+// What else stands in a stream, or beside it, than the pixels.
+TEST(DicomTransferSyntax, JpegIsReadHoweverItIsWrapped) {
+    const CtScan scan = bodyScan();
+    const std::vector<Uint8> end{0xff, 0xd9}, zeros(8, 0);
+    const auto padded = [&](std::vector<Uint8> stream) {
+        while (stream.back() == 0)  // makes its length even
+            stream.pop_back();
+        stream.insert(stream.end() - 2, zeros.begin(), zeros.end());
+        if (stream.size() % 2) stream.push_back(0);
+        return stream;
+    };
+    const TemporaryFolder folder;
+    tests::write(folder / "classic", scan);
+    for (const fs::path& file : tests::filesIn(folder / "classic")) {
+        tests::rewrite(file, EXS_JPEGProcess14SV1);
+        tests::wrap(file, {{padded(tests::joined(tests::fragmentsOf(file))), {}}},
+                    EXS_JPEGProcess14SV1);
+    }
+    expectVoxels(scan, folder / "classic");
+    // Of several frames, each of two fragments.
+    const fs::path enhanced = folder / "enhanced.dcm";
+    tests::writeEnhanced(enhanced, scan);
+    tests::rewrite(enhanced, EXS_JPEGProcess14SV1);
+    std::vector<tests::Fragments> frames;
+    for (const std::vector<Uint8>& stream : tests::fragmentsOf(enhanced)) {
+        const auto half = stream.begin() + std::ptrdiff_t(stream.size() / 4 * 2);
+        frames.push_back({{stream.begin(), half}, {half, stream.end()}});
+    }
+    for (const bool hasTable : {true, false}) {
+        tests::wrap(enhanced, frames, EXS_JPEGProcess14SV1, hasTable);
+        expectVoxels(scan, enhanced);
+    }
+    frames.pop_back();
+    tests::wrap(enhanced, frames, EXS_JPEGProcess14SV1, false);
+    EXPECT_FALSE(importSeries(enhanced)) << "a frame is missing";
+}
+
+TEST(DicomTransferSyntax, EnhancedRefusesOtherGroupsThanFrames) {
     const TemporaryFolder folder;
     tests::writeEnhanced(folder / "enhanced.dcm", bodyScan());
-    for (const char* count : {"25", "4097", "0", "-3", "999999999999", "x"}) {
+    for (const char* count : {"25", "23", "4097", "0", "-3", "999999999999", "x"}) {
         tests::set(folder / "enhanced.dcm", DCM_NumberOfFrames, count);
         const auto imported = importSeries(folder / "enhanced.dcm");
         ASSERT_FALSE(imported) << count;
