@@ -1,5 +1,6 @@
 #include "dicom/dicom_library.h"
 
+#include <cstdio>
 #include <mutex>
 #include <string>
 
@@ -14,24 +15,25 @@
 namespace haustra::dicom {
 namespace {
 
-thread_local std::size_t damages = 0;
+thread_local JpegWarnings warnings;
 
-/// Of what libjpeg warns of, whether pixels are lost; bytes that fill up what stands before the end
-/// of image, or a JFIF of another revision, cost none.
-bool tellsOfLostPixels(const std::string& warning) {
-    const auto holds = [&](const char* words) { return warning.find(words) != std::string::npos; };
-    return (holds("Corrupt JPEG data") || holds("remature end")) && !holds("before marker 0xd9");
-}
-
-/// Writes nothing, and counts.
-class DamageCounter : public dcmtk::log4cplus::Appender {
+/// Writes nothing, and counts what libjpeg warns of, where pixels may be lost by it; a JFIF of
+/// another revision costs none.
+class WarningCounter : public dcmtk::log4cplus::Appender {
 public:
-    ~DamageCounter() override { destructorImpl(); }
+    ~WarningCounter() override { destructorImpl(); }
     void close() override { closed = true; }
 
 private:
     void append(const dcmtk::log4cplus::spi::InternalLoggingEvent& event) override {
-        damages += tellsOfLostPixels(event.getMessage());
+        const std::string& told = event.getMessage();
+        std::size_t bytes = 0;
+        if (std::sscanf(told.c_str(), "Corrupt JPEG data: %zu extraneous bytes before marker 0xd9",
+                        &bytes) == 1)
+            warnings.bytesBeforeEnd += bytes;
+        else if (told.find("Corrupt JPEG data") != std::string::npos ||
+                 told.find("remature end") != std::string::npos)
+            ++warnings.damages;
     }
 };
 
@@ -43,15 +45,15 @@ void prepareDicomLibrary() {
         OFLog::configure(OFLogger::WARN_LOG_LEVEL);
         dcmtk::log4cplus::Logger root = dcmtk::log4cplus::Logger::getRoot();
         root.removeAllAppenders();
-        root.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new DamageCounter));
+        root.addAppender(dcmtk::log4cplus::SharedAppenderPtr(new WarningCounter));
         DcmRLEDecoderRegistration::registerCodecs();
         DJDecoderRegistration::registerCodecs();
         DJLSDecoderRegistration::registerCodecs();
     });
 }
 
-std::size_t jpegDamages() {
-    return damages;
+JpegWarnings jpegWarnings() {
+    return warnings;
 }
 
 }  // namespace haustra::dicom

@@ -9,8 +9,12 @@ namespace haustra::dicom {
 /// this first. Thread-safe.
 void prepareDicomLibrary();
 
-/// How often DCMTK's JPEG decoders have made pixels up in this thread, as data is damaged. They go
-/// on where they can, and tell it to the log alone.
-std::size_t jpegDamages();
+/// What DCMTK's JPEG decoders have warned of in this thread, in sum. They go on where they can, and
+/// tell it to the log alone.
+struct JpegWarnings {
+    std::size_t damages = 0;         ///< pixels were made up
+    std::size_t bytesBeforeEnd = 0;  ///< were left when all pixels were there: padding, or worse
+};
+JpegWarnings jpegWarnings();
 
 }  // namespace haustra::dicom

@@ -1,7 +1,5 @@
 #include "dicom/jpeg_header.h"
 
-#include <cstddef>
-
 namespace haustra::dicom {
 
 std::optional<JpegHeader> jpegHeader(std::span<const std::uint8_t> bytes) {
@@ -24,6 +22,19 @@ std::optional<JpegHeader> jpegHeader(std::span<const std::uint8_t> bytes) {
         at += 2 + std::size_t(pair(at + 2));
     }
     return std::nullopt;
+}
+
+std::size_t fillingOfJpeg(std::span<const std::uint8_t> bytes) {
+    const auto dropZeros = [&] {
+        const std::size_t before = bytes.size();
+        while (!bytes.empty() && bytes.back() == 0)
+            bytes = bytes.first(bytes.size() - 1);
+        return before - bytes.size();
+    };
+    dropZeros();  // behind the end of image
+    if (bytes.size() < 2 || bytes[bytes.size() - 2] != 0xff || bytes.back() != 0xd9) return 0;
+    bytes = bytes.first(bytes.size() - 2);
+    return dropZeros();
 }
 
 }  // namespace haustra::dicom

@@ -1,6 +1,7 @@
 // What a JPEG stream says of its own picture.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,5 +19,8 @@ struct JpegHeader {
 /// From the frame header (SOF) of a JPEG stream of any process (ITU-T T.81, B.2.2). None where the
 /// bytes hold none.
 std::optional<JpegHeader> jpegHeader(std::span<const std::uint8_t> bytes);
+
+/// How many zeros stand before the stream's end of image: some writers fill it up.
+std::size_t fillingOfJpeg(std::span<const std::uint8_t> bytes);
 
 }  // namespace haustra::dicom

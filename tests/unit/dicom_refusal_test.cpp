@@ -302,7 +302,19 @@ TEST(DicomRefusal, CompressedPixelsThatAreNotWhatTheHeaderSays) {
 // Decoders go on behind what they cannot read.
 TEST(DicomRefusal, DamageWithinCompressedPixels) {
     const TemporaryFolder folder;
-    CtScan scan = patternScan(axisAlignedGrid({64, 64, 1}, {1, 1, 1}));
+    const CtScan scan = patternScan(axisAlignedGrid({64, 64, 1}, {1, 1, 1}));
+    // Pixels that are there too early leave bytes before the end.
+    tests::write(folder / "early", scan);
+    const fs::path early = folder / "early/0001.dcm";
+    tests::rewrite(early, EXS_JPEGProcess14SV1);
+    std::vector<Uint8> stream = tests::joined(tests::fragmentsOf(early));
+    while (stream.back() == 0)
+        stream.pop_back();
+    const std::vector<Uint8> more(50, 0x55);
+    stream.insert(stream.end() - 2, more.begin(), more.end());
+    stream.resize(stream.size() + stream.size() % 2, 0);
+    tests::wrap(early, {{stream}}, EXS_JPEGProcess14SV1);
+    expectRefused(early, "0001.dcm", "compressed data is damaged");
     for (const E_TransferSyntax syntax :
          {EXS_JPEGProcess14SV1, EXS_JPEGLSLossless, EXS_RLELossless}) {
         SCOPED_TRACE(DcmXfer(syntax).getXferName());
