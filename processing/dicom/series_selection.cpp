@@ -6,8 +6,10 @@
 #include <array>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 namespace haustra::dicom {
 namespace {
@@ -59,25 +61,29 @@ bool holdsNothing(const fs::path& file) {
     return std::ranges::all_of(head, [](char byte) { return byte == 0; });
 }
 
-/// Whether a file that is no DICOM is named as the series' files beside it are, so that it may have
-/// been one: of their ending, or, where they have none, empty or of zeros.
-bool mayHaveBeenOfIt(const fs::path& stranger, const Series& series) {
-    if (stranger.filename().string().starts_with('.')) return false;  // another program's
-    const std::string ending = endingOf(stranger);
-    const bool besideAlike = std::ranges::any_of(series.images, [&](const ImageHeader& image) {
-        return image.file.parent_path() == stranger.parent_path() && endingOf(image.file) == ending;
-    });
-    return besideAlike && (!ending.empty() || holdsNothing(stranger));
+/// The first of some files that are no DICOM that is named as the series' files beside it are, so
+/// that it may have been one: of their ending, or, where they have none, empty or of zeros.
+std::optional<fs::path> lostFileOf(const Series& series, const std::vector<fs::path>& strangers) {
+    std::set<std::pair<fs::path, std::string>> named;  // folders, and endings in them
+    for (const ImageHeader& image : series.images)
+        named.emplace(image.file.parent_path(), endingOf(image.file));
+    for (const fs::path& stranger : strangers) {
+        if (stranger.filename().string().starts_with('.')) continue;  // another program's
+        const std::string ending = endingOf(stranger);
+        if (named.contains({stranger.parent_path(), ending}) &&
+            (!ending.empty() || holdsNothing(stranger)))
+            return stranger;
+    }
+    return std::nullopt;
 }
 
 /// Fails where a file of the series may be lost, or images are not of one examination.
 Result<void> checkWhole(const Series& series, const std::vector<fs::path>& strangers) {
-    for (const fs::path& stranger : strangers)
-        if (mayHaveBeenOfIt(stranger, series))
-            return fail(ErrorKind::badInput,
-                        "this is not a DICOM file, though it is named as those of the series "
-                        "beside it are: it may be a slice that has lost its content",
-                        stranger.string());
+    if (const auto lost = lostFileOf(series, strangers))
+        return fail(ErrorKind::badInput,
+                    "this is not a DICOM file, though it is named as those of the series beside it "
+                    "are: it may be a slice that has lost its content",
+                    lost->string());
     const ImageHeader& first = series.images.front();
     const auto another = [](const char* what, const ImageHeader& image, const ImageHeader& than) {
         return fail(ErrorKind::badInput,
