@@ -1,6 +1,5 @@
 #include "cad/detect.h"
 
-#include "cad/biopsy_transfer.h"
 #include "cad/examined_colon.h"
 #include "cad/masses.h"
 #include "cad/places.h"

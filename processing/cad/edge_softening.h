@@ -20,10 +20,9 @@ struct SoftenedScan {
 ///
 /// a is the least by which the wall's edges (`peak` of wallEdges) come down to those that detection
 /// has learnt from; noise, which the kernel enhanced alike, comes down with them. The volumes are
-/// whole, and differ from the colon's in the box around its wall, as far as biopsy rays
-/// reach, alone; what cleansing has taken out
-/// stays the same. `edges` are the colon's. None where these are no sharper than what has been
-/// learnt from. The same for any number of threads.
+/// whole, and differ from the colon's in the box around its wall alone, as far as biopsy rays
+/// reach; what cleansing has taken out stays the same. `edges` are the colon's. None where these
+/// are no sharper than what has been learnt from. The same for any number of threads.
 std::optional<SoftenedScan> softened(const PreparedColon& colon, const WallEvidence& evidence,
                                      const WallEdges& edges, int threads);
 

@@ -117,12 +117,6 @@ WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smoo
     return statistics;
 }
 
-TransferFunction transferFunctionFor(const EvidenceOptions& options,
-                                     const WallStatistics& statistics) {
-    return options.transferFunction ? *options.transferFunction
-                                    : automaticBiopsyTransfer(statistics);
-}
-
 WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options,
                             WallEvidence ofSurface) {
     const auto tell = [&](double share) {
@@ -172,7 +166,9 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     evidence.untagged = samplesBehind(before, LumenLabel::untagged);
     evidence.formerFluid = FormerFluid(evidence.samples.mesh.vertices, evidence.wet);
     evidence.statistics = wallStatistics(colon, *evidence.smooth);
-    evidence.transferFunction = transferFunctionFor(options, evidence.statistics);
+    evidence.transferFunction = options.transferFunction
+                                    ? *options.transferFunction
+                                    : automaticBiopsyTransfer(evidence.statistics);
     const BiopsyTable table(evidence.transferFunction);
     const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
     evidence.rays.resize(evidence.samples.mesh.vertices.size());

@@ -90,10 +90,6 @@ SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int thread
 /// by second differences along lines into the tissue beneath some 40,000 of the surface's vertices.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
 
-/// That of the options, or else derived from the scan.
-TransferFunction transferFunctionFor(const EvidenceOptions& options,
-                                     const WallStatistics& statistics);
-
 /// `ofSurface`: evidence of the same surface and centerline in another scan. It gives its samples
 /// and its axis, which are the same, and is spent; empty: they are made.
 WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options,

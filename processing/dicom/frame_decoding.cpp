@@ -102,15 +102,13 @@ public:
         }
         const std::size_t needed = pixels() * image_.frames.size() * cellBytes();
         if (pixelData_->getLength() < needed) {
-            return damaged(("its pixel data holds " + std::to_string(pixelData_->getLength()) +
-                            " of " + std::to_string(needed) + " bytes")
-                               .c_str());
+            return damaged("its pixel data holds " + std::to_string(pixelData_->getLength()) +
+                           " of " + std::to_string(needed) + " bytes");
         }
         if (!isPadding(needed)) {
-            return damaged(("its pixel data holds " + std::to_string(pixelData_->getLength()) +
-                            " bytes, where its rows, columns and bits ask for " +
-                            std::to_string(needed))
-                               .c_str());
+            return damaged("its pixel data holds " + std::to_string(pixelData_->getLength()) +
+                           " bytes, where its rows, columns and bits ask for " +
+                           std::to_string(needed));
         }
         return {};
     }
@@ -185,8 +183,8 @@ private:
     }
     std::size_t cellBytes() const { return std::size_t(image_.format.bitsAllocated) / 8; }
 
-    tl::unexpected<Error> damaged(const char* why) const {
-        return fail(ErrorKind::badInput, std::string("the pixels cannot be read: ") + why, place_);
+    tl::unexpected<Error> damaged(const std::string& why) const {
+        return fail(ErrorKind::badInput, "the pixels cannot be read: " + why, place_);
     }
 
     const HuTable& table(const StoredFormat& format, const Rescale& rescale) {
@@ -274,12 +272,11 @@ private:
         const bool isWideEnough = (header->precision > 8) == (format.bitsAllocated == 16) &&
                                   (!format.isSigned || header->precision >= format.bitsStored);
         if (header->components == 1 && header->size == image_.matrix && isWideEnough) return {};
-        return damaged(("its JPEG stream is of " + std::to_string(header->size.x) + " columns, " +
-                        std::to_string(header->size.y) + " rows and " +
-                        std::to_string(header->precision) + " bits, the file of " +
-                        std::to_string(image_.matrix.x) + ", " + std::to_string(image_.matrix.y) +
-                        " and " + std::to_string(format.bitsStored))
-                           .c_str());
+        return damaged("its JPEG stream is of " + std::to_string(header->size.x) + " columns, " +
+                       std::to_string(header->size.y) + " rows and " +
+                       std::to_string(header->precision) + " bits, the file of " +
+                       std::to_string(image_.matrix.x) + ", " + std::to_string(image_.matrix.y) +
+                       " and " + std::to_string(format.bitsStored));
     }
 
     Result<void> readJpeg2000(int frame, const Rescale& rescale) {
