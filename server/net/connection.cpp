@@ -74,14 +74,14 @@ asio::awaitable<void> Connection::run(std::function<bool()> admit) {
     expectWithin(readDeadline_, patience_.handshake);
     co_await stream_.async_handshake(asio::ssl::stream_base::server, asio::use_awaitable);
     expectWithin(readDeadline_, patience_.hello);
-    makeSession();
-    if (!admit()) session_->end(protocol::ErrorReport::BUSY, "the server has no room left");
+    makeSession(std::move(admit));
     co_await readFrames();
 }
 
-void Connection::makeSession() {
+void Connection::makeSession(std::function<bool()> admit) {
     const std::weak_ptr<Connection> weak = weak_from_this();
     session::Peer peer;
+    peer.admit = std::move(admit);
     peer.send = [weak](Bytes frames, bool picture) {
         if (const auto self = weak.lock()) self->send(std::move(frames), picture);
     };

@@ -32,7 +32,7 @@ public:
                const session::Services& services, session::SessionId id, Patience patience);
 
     /// Serves the client until it goes, or breaks the protocol, or is too slow. `admit` is asked
-    /// after the handshake; where it says no the client is told to come again.
+    /// once the client has said who it is (session::Peer).
     void start(std::function<bool()> admit, std::function<void()> closed);
     /// Tells the client that the server stops, and ends.
     void stop();
@@ -47,7 +47,7 @@ private:
     asio::awaitable<void> run(std::function<bool()> admit);
     asio::awaitable<void> readFrames();
     asio::awaitable<void> writeQueued();
-    void makeSession();
+    void makeSession(std::function<bool()> admit);
     void send(Bytes bytes, bool picture);
     void expectWithin(asio::steady_timer& deadline, std::chrono::milliseconds patience);
     bool mustPause() const;

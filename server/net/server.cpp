@@ -24,7 +24,7 @@ namespace {
 
 using asio::ip::tcp;
 
-// Connections whose handshake is not done yet may come on top of the sessions.
+// Connections that have not said hello yet may come on top of the sessions.
 constexpr std::size_t maxStrangers = 64;
 constexpr std::chrono::milliseconds acceptPause{100};  // where no file descriptor is left
 constexpr std::chrono::milliseconds stopPatience{3000};
@@ -124,7 +124,7 @@ struct Server::Impl {
     std::optional<session::Services> services;
 
     std::set<std::shared_ptr<Connection>> connections;
-    // Of these, whose handshake is not done, the oldest first.
+    // Of these, those that have not said hello, the oldest first.
     std::map<session::SessionId, std::shared_ptr<Connection>> strangers;
     session::SessionId lastId = 0;
     int sessions = 0;  // admitted connections
@@ -205,7 +205,7 @@ void Server::Impl::accept() {
 void Server::Impl::serve(tcp::socket socket) {
     if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) {
         if (strangers.empty()) return;
-        // Whose handshake has not come for longest makes room for another's.
+        // Who has said nothing for longest makes room for another.
         const auto oldest = strangers.extract(strangers.begin());
         oldest.mapped()->stop();
     }

@@ -177,6 +177,7 @@ void Session::handle(const protocol::Hello& hello) {
         if (!reader) return end(ErrorReport::BAD_MESSAGE, describe(reader.error()));
         if (tellsShown_) reader_ = *reader;
     }
+    if (!peer_.admit()) return end(ErrorReport::BUSY, "the server has no room left");
     // What such a client has been sent has been seen.
     if (!tellsShown_) seenLimits_.leastMs = 0;
     state_ = State::ready;

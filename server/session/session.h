@@ -42,6 +42,7 @@ struct Services {
 
 /// The session's side of a connection. Called on the io thread.
 struct Peer {
+    std::function<bool()> admit;  ///< after a good hello, once: no is answered by BUSY
     std::function<void(std::vector<std::uint8_t> frames, bool picture)> send;
     std::function<void()> endAfterSending;  ///< the session is over
     std::function<void()> answered;         ///< tooBusy() may have become false

@@ -26,7 +26,7 @@ TEST(Server, FullIsSaidAndStoppingIsClean) {
     ASSERT_TRUE(first.hello());
     {
         TestClient second(server.port());
-        const auto refused = second.answer();
+        const auto refused = second.hello();
         ASSERT_TRUE(refused && refused->has_error());
         EXPECT_EQ(refused->error().code(), ErrorReport::BUSY);
         EXPECT_FALSE(second.next());
@@ -50,9 +50,12 @@ TEST(Server, WhoSaysNothingMakesRoomForWhoDoes) {
     std::vector<asio::ip::tcp::socket> silent;
     for (int n = 0; n < 100; ++n)
         silent.emplace_back(io).connect({asio::ip::address_v4::loopback(), server.port()});
+    const TestClient mute[] = {TestClient(server.port()), TestClient(server.port())};
     TestClient first(server.port()), second(server.port());
-    EXPECT_TRUE(first.hello());
-    EXPECT_TRUE(second.hello());
+    for (TestClient* const client : {&first, &second}) {
+        const auto welcome = client->hello();
+        EXPECT_TRUE(welcome && welcome->has_welcome());
+    }
     // The others are still waited for.
     silent.back().non_blocking(true);
     char byte = 0;
