@@ -4,6 +4,7 @@
 
 #include "core/findings.h"
 #include "core/flat_map.h"
+#include "core/patient_point.h"
 #include "core/scan_values.h"
 #include "core/seen_limits.h"
 #include "core/view.h"
@@ -25,7 +26,7 @@ inline constexpr std::uint32_t lensViewport = 8;  ///< the ninth, which this cli
 inline constexpr std::uint32_t minViewportPixels = 16, maxViewportPixels = 2048;  ///< of each side
 
 // ---- §4, what views show
-inline constexpr double maxCoordinateMm = 1e6;  ///< of each coordinate, either way
+using haustra::maxCoordinateMm;  ///< of each coordinate, either way
 using haustra::maxMarkRadiusMm;
 using haustra::maxObliqueMm;
 using haustra::maxOverviewBookmarks;

@@ -352,9 +352,8 @@ glm::dvec3 vectorFrom(const Vec3& message) {
 
 Result<glm::dvec3> positionFrom(const Vec3& message) {
     const glm::dvec3 position = vectorFrom(message);
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(position[axis]) <= maxCoordinateMm))
-            return refuseView("a coordinate is not a number within a kilometre", "position");
+    if (!isPatientPoint(position))
+        return refuseView("a coordinate is not a number within a kilometre", "position");
     return position;
 }
 

@@ -73,13 +73,6 @@ inline std::vector<double> sortedDistances(const std::vector<glm::dvec3>& sample
     return distances;
 }
 
-/// The greatest distance from any sample of either mesh to the other.
-inline double sampledHausdorffMm(const TriMesh& a, const TriMesh& b, double spacingMm) {
-    const double forth = sortedDistances(samplesOn(a, spacingMm), SurfaceDistance(b)).back();
-    const double back = sortedDistances(samplesOn(b, spacingMm), SurfaceDistance(a)).back();
-    return std::max(forth, back);
-}
-
 /// Each triangle's smallest angle in degrees, ascending.
 inline std::vector<double> sortedSmallestAngles(const TriMesh& mesh) {
     std::vector<double> angles;

@@ -1,5 +1,6 @@
 #include "link/connection.h"
 
+#include "core/quantile.h"
 #include "link/fingerprint.h"
 #include "link/peer_text.h"
 #include "protocol/capabilities.h"
@@ -93,7 +94,7 @@ struct Connection::Impl {
             writing = false;
             const bool retry = options.reconnect && ending.worthRetrying && !gaveUp;
             if (ending.wasUp) pause = std::chrono::milliseconds(500);
-            push(LinkDown{ending.error, !retry, std::chrono::duration<double>(pause).count()}, 0);
+            push(LinkDown{ending.error, !retry}, 0);
             if (!retry) break;
             retryTimer.expires_after(pause);
             asio::error_code ignored;
@@ -178,6 +179,11 @@ struct Connection::Impl {
                 what + (timedOut ? "no answer for " + std::to_string(patience.count() / 1000) + " s"
                                  : inWords(writeFailure ? writeFailure : failure.code())),
                 name};
+        } catch (const std::exception& fault) {
+            ending.error = {ErrorKind::device,
+                            std::string("the connection failed: ") + fault.what(), name};
+            ending.worthRetrying = false;
+            if (stream) closeSocket();
         }
         open = false;
         deadline = Clock::time_point::max();
@@ -270,9 +276,7 @@ struct Connection::Impl {
             std::chrono::duration<double, std::milli>(Clock::now() - pingSentAt).count());
         if (roundTripsMs.size() > 5) roundTripsMs.pop_front();
         std::vector<double> sorted(roundTripsMs.begin(), roundTripsMs.end());
-        std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2),
-                         sorted.end());
-        medianRoundTripMs = sorted[sorted.size() / 2];
+        medianRoundTripMs = medianOf(sorted);
     }
 
     void queueOut(const std::vector<std::uint8_t>& frame) {
@@ -302,7 +306,7 @@ struct Connection::Impl {
     void push(Body body, std::size_t bytes) {
         {
             const std::lock_guard lock(mutex);
-            incoming.push_back({Clock::now(), std::move(body), bytes, link});
+            incoming.push_back({std::move(body), bytes, link});
             incomingBytes += bytes;
         }
         came.notify_one();
@@ -356,7 +360,6 @@ struct Connection::Impl {
         std::vector<std::uint8_t> bytes;
     };
     struct Incoming {
-        Clock::time_point at;
         std::variant<LinkUp, LinkDown, TilePayload, ServerMessage> body;
         std::size_t bytes;
         std::uint64_t link;
@@ -374,7 +377,7 @@ struct Connection::Impl {
     void deliver(const Incoming& from, Body body, std::size_t bytes) {
         {
             const std::lock_guard lock(mutex);
-            events.push_back({{from.at, std::move(body)}, bytes, from.link});
+            events.push_back({std::move(body), bytes, from.link});
             eventBytes += bytes;
         }
         arrived.notify_one();
@@ -436,7 +439,7 @@ std::optional<Event> Connection::next(std::chrono::milliseconds patience) {
     impl_->events.pop_front();
     impl_->eventBytes -= queued.bytes;
     impl_->came.notify_one();
-    if (std::holds_alternative<LinkUp>(queued.event.body)) impl_->seenLink = queued.link;
+    if (std::holds_alternative<LinkUp>(queued.event)) impl_->seenLink = queued.link;
     return std::move(queued.event);
 }
 

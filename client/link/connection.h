@@ -43,17 +43,13 @@ struct LinkUp {
 struct LinkDown {
     Error error;
     bool final = true;
-    double retryInSeconds = 0.0;
 };
-/// A picture all of whose tiles have come.
+/// A picture all of whose tiles have come, and when they were decoded.
 struct PictureDone {
     tiles::Picture picture;
     Clock::time_point decodedAt;
 };
-struct Event {
-    Clock::time_point at;  ///< when its last byte had arrived
-    std::variant<LinkUp, LinkDown, PictureDone, protocol::ServerMessage> body;
-};
+using Event = std::variant<LinkUp, LinkDown, PictureDone, protocol::ServerMessage>;
 
 /// Connects from construction on. Says hello and keeps the link alive with pings by itself. TLS
 /// 1.3 only; the certificate is checked by its pinned fingerprint (known_servers.h), before any

@@ -18,8 +18,14 @@ struct Entry {
 
 Result<std::vector<Entry>> readEntries(const std::filesystem::path& file) {
     std::vector<Entry> entries;
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) return entries;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        // No file is a first meeting; one that cannot be looked for is not.
+        if (error)
+            return fail(ErrorKind::io, "cannot read the known servers: " + error.message(),
+                        file.string());
+        return entries;
+    }
     std::ifstream in(file);
     if (!in) return fail(ErrorKind::io, "cannot read the known servers", file.string());
     std::string line;

@@ -51,8 +51,8 @@ void BiopsyLens::close() {
     picture_ = {};
 }
 
-void BiopsyLens::take(std::deque<Arrival>& arrivals) {
-    for (Arrival& arrival : arrivals) {
+void BiopsyLens::take(std::deque<link::PictureDone>& arrivals) {
+    for (link::PictureDone& arrival : arrivals) {
         if (arrival.picture.viewport != viewport) continue;
         bool answers = false;  // what was asked for before the lens was closed counts no more
         while (!asked_.empty() && asked_.front().sequence <= arrival.picture.sequence) {
@@ -64,8 +64,9 @@ void BiopsyLens::take(std::deque<Arrival>& arrivals) {
         picture_ = std::move(arrival.picture);
         ++count_;
     }
-    std::erase_if(arrivals,
-                  [](const Arrival& arrival) { return arrival.picture.viewport == viewport; });
+    std::erase_if(arrivals, [](const link::PictureDone& arrival) {
+        return arrival.picture.viewport == viewport;
+    });
 }
 
 void BiopsyLens::update(const Camera& wanted, const Camera* shown, glm::ivec2 pane,

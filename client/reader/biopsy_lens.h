@@ -47,7 +47,7 @@ public:
     void setRadius(double heights);
 
     /// Takes its pictures out of what has arrived.
-    void take(std::deque<Arrival>& arrivals);
+    void take(std::deque<link::PictureDone>& arrivals);
     /// Asks for its picture where another is to be seen. `wanted`: the endoscopic camera; `shown`:
     /// of the newest endoscopic picture, or null; `pane`: its size in pixels, 0 where it is out of
     /// sight.

@@ -99,7 +99,8 @@ Result<std::string> textOf(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::string text(maxFileBytes, '\0');
     if (in) in.read(text.data(), std::streamsize(text.size()));
-    if (!in.eof() && in.gcount() == 0)
+    // A file that is too long is damaged; one that cannot be read to its end may be sound.
+    if (in.bad() || (!in.eof() && in.gcount() == 0))
         return fail(ErrorKind::io, "cannot read a bookmark that is not saved yet", file.string());
     text.resize(std::size_t(in.gcount()));
     return text;

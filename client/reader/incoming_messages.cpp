@@ -26,11 +26,6 @@ constexpr std::size_t maxNameBytes = 64, maxDescriptionBytes = 1000, maxTimeByte
 bool isWithin(double value, double low, double high) {
     return value >= low && value <= high;
 }
-bool isPlace(glm::dvec3 mm) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!isWithin(mm[axis], -maxCoordinateMm, maxCoordinateMm)) return false;
-    return true;
-}
 bool isArc(double mm) {
     return isWithin(mm, -maxCoordinateMm, maxCoordinateMm);
 }
@@ -53,7 +48,7 @@ Result<void> checkExtent(const Grid& grid) {
         const glm::dvec3 last(grid.size - 1);
         const glm::dvec3 voxel((corner & 1) ? last.x : 0.0, (corner & 2) ? last.y : 0.0,
                                (corner & 4) ? last.z : 0.0);
-        if (!isPlace(grid.patientFromVoxelPoint(voxel)))
+        if (!isPatientPoint(grid.patientFromVoxelPoint(voxel)))
             return fail(ErrorKind::badInput, "the volume lies nowhere",
                         "case opened: patient_from_voxel");
     }
@@ -100,7 +95,7 @@ Result<Centerline> centerlineFrom(const protocol::CaseOpened& message) {
         point.positionMm = {sample[0], sample[1], sample[2]};
         point.arcMm = sample[3];
         point.radiusMm = sample[4];
-        if (!isPlace(point.positionMm) || !isArc(point.arcMm) ||
+        if (!isPatientPoint(point.positionMm) || !isArc(point.arcMm) ||
             !isWithin(point.radiusMm, 0.0, maxCoordinateMm))
             return refuse("a sample lies nowhere");
         if (point.arcMm < arcBefore) return refuse("its arc does not grow");
@@ -156,9 +151,12 @@ Result<ColonTrust> trustFrom(const protocol::ColonTrust& message) {
     constexpr double maxFigure = 1e6;
     for (int n = 0; n < colonSegments; ++n) {
         const protocol::ColonSegment& segment = message.segments(n);
-        trust.segments[std::size_t(n)] = {segment.length_mm(), segment.diameter_mm(),
-                                          segment.gas_ml(), segment.tagged_ml(),
-                                          segment.collapsed_mm()};
+        trust.segments[std::size_t(n)] = {
+            .lengthMm = segment.length_mm(),
+            .diameterMm = segment.diameter_mm(),
+            .gasMl = segment.gas_ml(),
+            .taggedMl = segment.tagged_ml(),  // that without tagging is part of it
+            .collapsedMm = segment.collapsed_mm()};
         for (const double number : {segment.length_mm(), segment.diameter_mm(), segment.gas_ml(),
                                     segment.tagged_ml(), segment.collapsed_mm()}) {
             if (!isWithin(number, 0.0, maxFigure)) return refuse("a segment's figure is none");
@@ -260,7 +258,8 @@ Result<WallPlace> placeFrom(const protocol::WallPlace& message) {
     place.cameraMm = protocol::vectorFrom(message.camera_mm());
     const bool inStrip = !place.flat || (place.flat->x >= 0.0 && place.flat->x < 1.0 &&
                                          isWithin(place.flat->y, 0.0, maxFlatHeight));
-    if (!inStrip || !isPlace(place.positionMm) || !isPlace(place.cameraMm) || !isArc(place.arcMm))
+    if (!inStrip || !isPatientPoint(place.positionMm) || !isPatientPoint(place.cameraMm) ||
+        !isArc(place.arcMm))
         return fail(ErrorKind::badInput, "the server sent a place that is nowhere", "wall");
     return place;
 }
@@ -274,7 +273,7 @@ Result<Bookmark> bookmarkFrom(const protocol::Bookmark& message) {
     bookmark.camera.positionMm = protocol::vectorFrom(message.position_mm());
     bookmark.arcMm = message.arc_mm();
     if (bookmark.id == 0) return refuse("the server sent one without a number");
-    if (!isPlace(bookmark.camera.positionMm) || !isArc(bookmark.arcMm))
+    if (!isPatientPoint(bookmark.camera.positionMm) || !isArc(bookmark.arcMm))
         return refuse("the server sent one that lies nowhere");
     const glm::dvec3 forward = protocol::vectorFrom(message.forward()),
                      up = protocol::vectorFrom(message.up());
@@ -351,7 +350,7 @@ Result<ListedFinding> findingFrom(const protocol::Finding& message, const Grid& 
     finding.score = message.probability();
     for (const glm::dvec3 place :
          {finding.positionMm, finding.diameterEndsMm.first, finding.diameterEndsMm.second})
-        if (!isPlace(place)) return refuseFinding("the server sent one that lies nowhere");
+        if (!isPatientPoint(place)) return refuseFinding("the server sent one that lies nowhere");
     if (!isArc(finding.arcMm) || !isWithin(finding.diameterMm, 0.0, maxCoordinateMm) ||
         !isWithin(finding.heightMm, -maxCoordinateMm, maxCoordinateMm) ||
         !isWithin(finding.score, 0.0, 1.0))

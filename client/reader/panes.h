@@ -29,7 +29,7 @@ public:
     void clear();
     /// Asks anew, as if the view had changed: its colours have.
     void touch(View view) { pacers_[std::size_t(view)].touch(); }
-    void take(std::deque<Arrival> arrivals, Clock::time_point now) {
+    void take(std::deque<link::PictureDone> arrivals, Clock::time_point now) {
         pictures_.take(std::move(arrivals), now);
     }
     /// Asks for the views that show another thing than was asked for, or owe their still.

@@ -21,8 +21,8 @@ void PictureLog::asked(View view, const Asked& asked) {
     if (all.size() > 256) all.pop_front();
 }
 
-void PictureLog::take(std::deque<Arrival> arrivals, Clock::time_point now) {
-    for (Arrival& arrival : arrivals) {
+void PictureLog::take(std::deque<link::PictureDone> arrivals, Clock::time_point now) {
+    for (link::PictureDone& arrival : arrivals) {
         const auto viewport = std::size_t(arrival.picture.viewport);
         if (viewport >= viewCount) continue;
         const bool endoscopic = View(viewport) == View::endoscopic;

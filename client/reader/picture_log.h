@@ -26,7 +26,7 @@ public:
     /// Another case is open: nothing is shown, nothing owed.
     void clear();
     void asked(View view, const Asked& asked);
-    void take(std::deque<Arrival> arrivals, Clock::time_point now);
+    void take(std::deque<link::PictureDone> arrivals, Clock::time_point now);
 
     /// The newest picture of a view, and how many there were; nothing shown: count 0.
     const tiles::Picture& picture(View view) const { return of(view).picture; }

@@ -227,11 +227,11 @@ void Reader::addBookmark(std::string note) {
             camera.up = glm::normalize(glm::cross(right, way));
         }
     }
-    session_.addBookmark(camera, flight_.arcMm(), std::move(note));
+    session_.addBookmark(camera, flight_.placeArcMm(), std::move(note));
 }
 
 std::optional<Bookmark> Reader::nextBookmark(int step) const {
-    const double here = flight_.arcMm();
+    const double here = flight_.placeArcMm();
     double nearest = std::numeric_limits<double>::max();
     std::optional<Bookmark> found;
     for (const Bookmark& bookmark : session_.bookmarks()) {

@@ -173,14 +173,14 @@ void Session::poll(std::chrono::milliseconds patience) {
     const auto end = Clock::now() + longest;
     for (; event; event = Clock::now() < end ? connection_.next(std::chrono::milliseconds(0))
                                              : std::nullopt) {
-        if (auto* up = std::get_if<link::LinkUp>(&event->body))
+        if (auto* up = std::get_if<link::LinkUp>(&*event))
             handle(std::move(*up));
-        else if (auto* down = std::get_if<link::LinkDown>(&event->body))
+        else if (auto* down = std::get_if<link::LinkDown>(&*event))
             handle(*down);
-        else if (auto* done = std::get_if<link::PictureDone>(&event->body))
-            handle(std::move(*done), event->at);
+        else if (auto* done = std::get_if<link::PictureDone>(&*event))
+            handle(std::move(*done));
         else
-            handle(std::get<protocol::ServerMessage>(event->body));
+            handle(std::get<protocol::ServerMessage>(*event));
         if (phase_ == Phase::failed) return;
     }
     if (Clock::now() >= tellsShownAt_) tellShown();
@@ -383,7 +383,7 @@ void Session::dropQuestionsOfLostLinks() {
                 "the link was lost twice while this was asked: it is not asked again", "wall"});
 }
 
-void Session::handle(link::PictureDone done, Clock::time_point at) {
+void Session::handle(link::PictureDone done) {
     if (const auto of = viewports_.find(done.picture.viewport); of != viewports_.end()) {
         ViewportState& state = of->second;
         const bool answers = done.picture.sequence >= state.askedSequence;
@@ -392,7 +392,7 @@ void Session::handle(link::PictureDone done, Clock::time_point at) {
         else if (state.owedSince)
             state.owedSince = Clock::now();  // it is on its way to it
     }
-    arrivals_.push_back({std::move(done.picture), at, done.decodedAt});
+    arrivals_.push_back(std::move(done));
     if (arrivals_.size() > 64) arrivals_.pop_front();
 }
 

@@ -31,12 +31,6 @@ enum class Phase {
     failed,      ///< for good: failure() tells why
 };
 
-/// A picture that has been decoded, with when its last tile came and when decoding was done.
-struct Arrival {
-    tiles::Picture picture;
-    Clock::time_point receivedAt, decodedAt;
-};
-
 /// What became of a bookmark that was owed.
 struct BookmarkOutcome {
     Bookmark bookmark;  ///< as it was sent
@@ -175,7 +169,7 @@ public:
     bool awaits(std::uint64_t request) const { return questions_.contains(request); }
 
     /// Pictures finished since the last call, oldest first. At most the 64 newest are kept.
-    std::deque<Arrival> takePictures() { return std::exchange(arrivals_, {}); }
+    std::deque<link::PictureDone> takePictures() { return std::exchange(arrivals_, {}); }
     /// What the server refused since the last call, or the journal's disk; the session goes on. Of
     /// many the first 16.
     std::vector<Error> takeRefusals() { return std::exchange(refusals_, {}); }
@@ -277,7 +271,7 @@ private:
     void handle(link::LinkUp up);
     void handle(const link::LinkDown& down);
     void handle(const protocol::ServerMessage& message);
-    void handle(link::PictureDone done, Clock::time_point at);
+    void handle(link::PictureDone done);
     void opened(const protocol::CaseOpened& message);
     void refused(const protocol::ErrorReport& report);
     void refuse(std::uint64_t request, const Error& error);
@@ -332,7 +326,7 @@ private:
     std::uint64_t sequence_ = 0, request_ = 0, answeredList_ = 0, answeredSeen_ = 0,
                   casesAsked_ = 0, answeredCases_ = 0;
     std::map<int, ViewportState> viewports_;
-    std::deque<Arrival> arrivals_;
+    std::deque<link::PictureDone> arrivals_;
     std::vector<Error> refusals_;
     std::vector<Bookmark> bookmarks_;
     std::unordered_map<std::uint64_t, std::size_t> bookmarkOfId_;  // its place among them

@@ -18,14 +18,7 @@ TransferCurve::TransferCurve(std::vector<TransferFunctionPoint> points)
     : points_(std::move(points)) {}
 
 TransferFunctionPoint TransferCurve::at(double hu) const {
-    const auto after =
-        std::find_if(points_.begin(), points_.end(), [&](const auto& p) { return p.hu > hu; });
-    TransferFunctionPoint here = after == points_.begin() ? points_.front() : *(after - 1);
-    if (after != points_.begin() && after != points_.end()) {
-        const double share = (hu - here.hu) / (after->hu - here.hu);
-        here.color = glm::mix(here.color, after->color, share);
-        here.opacity += share * (after->opacity - here.opacity);
-    }
+    TransferFunctionPoint here = pointAt(points_, hu);
     here.hu = hu;
     return here;
 }

@@ -29,7 +29,7 @@ double msBetween(Clock::time_point from, Clock::time_point to) {
 }
 
 // Adds a picture's times to a report.
-void count(ActionReport& report, const Arrival& arrival, Clock::time_point askedAt) {
+void count(ActionReport& report, const link::PictureDone& arrival, Clock::time_point askedAt) {
     const tiles::Picture& picture = arrival.picture;
     report.latencyMs.push_back(msBetween(askedAt, arrival.decodedAt));
     report.decodeMs.push_back(picture.decodeMs);
@@ -123,12 +123,12 @@ private:
     Status still(int viewport, const std::string& png, ActionReport& report);
     Status awaitStill(int viewport, std::uint64_t sequence, Clock::time_point askedAt,
                       const std::string& png, ActionReport& report);
-    Result<Arrival> awaitPicture(int viewport, std::uint64_t sequence, bool exact);
+    Result<link::PictureDone> awaitPicture(int viewport, std::uint64_t sequence, bool exact);
     Result<Session::WallAnswer> awaitWallAnswer(std::uint64_t request, ActionReport& report);
     Status awaitBookmarkList();
     static tl::unexpected<Error> noLedger();
     Status hold(double ms);
-    void show(const Arrival& arrival);
+    void show(const link::PictureDone& arrival);
     void log(const std::vector<ShownTime>& told);
     Status awaitThat(const std::function<bool()>& done, const std::string& what);
     Status writeJson(const std::string& file, const std::string& text, ActionReport& report);
@@ -137,7 +137,7 @@ private:
     const PlayOptions& options_;
     Flight flight_;
     std::map<int, OpenViewport> viewports_;
-    std::deque<Arrival> arrivals_;
+    std::deque<link::PictureDone> arrivals_;
     MissedReading missed_{session_};
     struct Asked {
         ViewState state;
@@ -204,10 +204,10 @@ Status Player::awaitCase() {
     return awaitCase();
 }
 
-Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool exact) {
-    Result<Arrival> found = fail(ErrorKind::noResult, "");
+Result<link::PictureDone> Player::awaitPicture(int viewport, std::uint64_t sequence, bool exact) {
+    Result<link::PictureDone> found = fail(ErrorKind::noResult, "");
     const auto look = [&] {
-        for (Arrival& arrival : session_.takePictures()) {
+        for (link::PictureDone& arrival : session_.takePictures()) {
             show(arrival);
             arrivals_.push_back(std::move(arrival));
         }
@@ -228,7 +228,7 @@ Result<Arrival> Player::awaitPicture(int viewport, std::uint64_t sequence, bool 
 }
 
 // What has come is on the screen of whoever plays.
-void Player::show(const Arrival& arrival) {
+void Player::show(const link::PictureDone& arrival) {
     const tiles::Picture& picture = arrival.picture;
     session_.onScreen(picture);
     const auto asked = asked_.find(picture.viewport);
@@ -263,7 +263,7 @@ Status Player::hold(double ms) {
             std::min(std::chrono::duration_cast<std::chrono::milliseconds>(until - Clock::now()) +
                          std::chrono::milliseconds(1),
                      std::chrono::milliseconds(100)));
-        for (Arrival& arrival : session_.takePictures()) {
+        for (link::PictureDone& arrival : session_.takePictures()) {
             show(arrival);
             arrivals_.push_back(std::move(arrival));
         }
@@ -306,7 +306,8 @@ ViewState Player::firstState(View view, int width, int height) const {
             return WholeStrip{};
         case View::flattenedZoom: {
             const auto& strip = session_.caseInfo()->flat;
-            return windowAround(strip ? strip->yAtArc(flight_.arcMm()) : 0.0, std::nullopt, width);
+            return windowAround(strip ? strip->yAtArc(flight_.placeArcMm()) : 0.0, std::nullopt,
+                                width);
         }
         case View::oblique:
             return obliqueAtCamera();
@@ -450,7 +451,7 @@ Status Player::run(const BookmarkAction& action, ActionReport& report) {
     for (int n = 0; n < action.count; ++n) {
         const auto askedAt = Clock::now();
         const std::string key =
-            session_.addBookmark(flight_.camera(), flight_.arcMm(), action.note);
+            session_.addBookmark(flight_.camera(), flight_.placeArcMm(), action.note);
         const Bookmark* added = nullptr;
         auto came =
             awaitThat([&] { return (added = session_.acknowledgedBookmark(key)) != nullptr; },
@@ -601,7 +602,7 @@ Status Player::run(const FlatAction& action, ActionReport& report) {
     TRY(mustBeFlattened());
     OpenViewport& zoom = open(action.viewport, View::flattenedZoom, action.size);
     const FlatStrip& strip = *session_.caseInfo()->flat;
-    FlatWindow window = windowAround(strip.yAtArc(action.arcMm.value_or(flight_.arcMm())),
+    FlatWindow window = windowAround(strip.yAtArc(action.arcMm.value_or(flight_.placeArcMm())),
                                      action.pixelsPerCircumference, zoom.width);
     if (action.center) window.center = *action.center;
     zoom.state = window;

@@ -81,7 +81,9 @@ Result<void> checkTrees(const BoostedTrees& boosted, int features) {
 }
 
 BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
-                        int trees, int depth, int leastRows, double softness) {
+                        int trees) {
+    constexpr int depth = 4, leastRows = 10;
+    constexpr float widthInDeviations = 0.2f;
     const int count = int(responses.size());
     const cv::Mat samples(count, features, CV_32F, const_cast<float*>(rows.data()));
     cv::Mat classes(count, 1, CV_32S);
@@ -100,7 +102,7 @@ BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> resp
     const auto& splits = boost->getSplits();
     BoostedTrees result;
     for (const float deviation : deviations(rows, std::size_t(features)))
-        result.widths.push_back(float(softness) * deviation);
+        result.widths.push_back(widthInDeviations * deviation);
     for (const int root : boost->getRoots()) {
         std::vector<TreeNode> tree;
         const auto add = [&](const auto& self, int at) -> std::int32_t {

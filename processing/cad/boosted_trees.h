@@ -33,12 +33,11 @@ struct BoostedTrees {
 Result<void> checkTrees(const BoostedTrees& boosted, int features);
 
 /// `rows`: `features` numbers each, as many rows as responses (0 or 1, both kinds). Gentle AdaBoost
-/// (Friedman, Hastie and Tibshirani, Annals of Statistics 2000; 28: 337; cv::ml::Boost): `trees` of
-/// `depth` splits at most; what holds fewer than `leastRows` rows is not split further, but a split
-/// may leave fewer on one side. Rows that together have less than a twentieth of the weight sit a
-/// round out. Widths are `softness` standard deviations
-/// of the rows. The same for equal input.
+/// (Friedman, Hastie and Tibshirani, Annals of Statistics 2000; 28: 337; cv::ml::Boost): `trees`
+/// with four levels of branches at most; what holds fewer than ten rows is not split further, but a
+/// split may leave fewer on one side. Rows that together have less than a twentieth of the weight
+/// sit a round out. Widths are a fifth of the rows' standard deviation. The same for equal input.
 BoostedTrees boostTrees(std::span<const float> rows, std::span<const float> responses, int features,
-                        int trees = 200, int depth = 4, int leastRows = 10, double softness = 0.2);
+                        int trees = 200);
 
 }  // namespace haustra::cad

@@ -337,8 +337,8 @@ std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
 }
 
 std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
-                                    std::span<const float> textureDistance, int threads,
-                                    double leastMm) {
+                                    std::span<const float> textureDistance, int threads) {
+    constexpr double leastMm = 5.0;
     const WallSamples& wall = evidence.samples;
     return patchesOf(wall,
                      componentsWhere(wall,

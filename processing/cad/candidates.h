@@ -51,11 +51,10 @@ std::vector<Patch> patchesByShape(const WallEvidence& evidence, Generator scale,
 std::vector<std::vector<Patch>> otherLevels(const WallEvidence& evidence,
                                             std::span<const Patch* const> patches, int threads);
 
-/// Connected samples whose texture distance is below 1, at least as wide as `leastMm`: the greatest
-/// distance between two of them (§6.2.5 drops those under 5 mm).
+/// Connected samples whose texture distance is below 1, at least 5 mm wide (§6.2.5): the greatest
+/// distance between two of them.
 std::vector<Patch> patchesByTexture(const WallEvidence& evidence,
-                                    std::span<const float> textureDistance, int threads,
-                                    double leastMm = 5.0);
+                                    std::span<const float> textureDistance, int threads);
 
 /// Greatest distance between two of the samples, to within a hundredth, and which they are.
 struct Diameter {

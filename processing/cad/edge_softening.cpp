@@ -1,9 +1,9 @@
 #include "cad/edge_softening.h"
 
 #include "cad/gaussian_kernel.h"
-#include "cad/quantile.h"
 #include "core/crop.h"
 #include "core/parallel.h"
+#include "core/quantile.h"
 #include "core/voxel_sweep.h"
 
 #include <algorithm>

@@ -10,9 +10,7 @@ namespace haustra::cad {
 namespace {
 
 bool blamed(const EvaluatedCase& each, const ToldPlace& place) {
-    if (place.lesion < 0) return true;
-    const TrueLesion& lesion = each.truth[std::size_t(place.lesion)];
-    return !lesion.neoplastic && !lesion.hyperplastic();
+    return place.lesion < 0 || each.truth[std::size_t(place.lesion)].isPolyp() == false;
 }
 
 // What a blamed place is.

@@ -1,7 +1,7 @@
 #include "cad/lesion_features.h"
 
-#include "cad/quantile.h"
 #include "cad/wall_lift.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>

@@ -193,13 +193,14 @@ float NormalScore::at(float value) const {
                      (value - values[n - 1]) / (values[n] - values[n - 1]));
 }
 
-NormalScore normalScoreOf(std::vector<float> values, int knots) {
+NormalScore normalScoreOf(std::vector<float> values) {
+    constexpr int knots = 33;
     std::sort(values.begin(), values.end());
     NormalScore score;
     // Of each distinct quantile the first and the last share that it stands for.
     std::vector<std::pair<double, double>> shares;
     for (int k = 0; k < knots; ++k) {
-        const double share = knots > 1 ? double(k) / double(knots - 1) : 0.5;
+        const double share = double(k) / double(knots - 1);
         const float value = values[std::size_t(std::lround(share * double(values.size() - 1)))];
         if (score.values.empty() || value > score.values.back()) {
             score.values.push_back(value);

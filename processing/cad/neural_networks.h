@@ -18,9 +18,9 @@ struct NormalScore {
     float at(float value) const;
 };
 
-/// From at most `knots` quantiles of the values, evenly spread; a value that several quantiles
-/// share has the middle one's score. Scores are within ±3. `values` must not be empty.
-NormalScore normalScoreOf(std::vector<float> values, int knots = 33);
+/// From 33 quantiles of the values, evenly spread; a value that several quantiles share has the
+/// middle one's score. Scores are within ±3. `values` must not be empty.
+NormalScore normalScoreOf(std::vector<float> values);
 
 /// y = W x + b, W by rows.
 struct DenseLayer {

@@ -1,8 +1,9 @@
 #include "cad/residue_film.h"
 
-#include "cad/quantile.h"
+#include "cad/wall_edges.h"
 #include "core/ct_scan.h"
 #include "core/normal_distribution.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,10 +23,6 @@ constexpr double profileStepMm = 0.25, profileMm = 6.0;
 // Where a film is as bright at the latest: at twice the blur behind the surface the faintest are at
 // their brightest.
 constexpr double latestBlurs = 2.5;
-
-double gasHu(const PreparedColon& colon) {
-    return colon.tissue.meanHu[std::size_t(Tissue::air)];
-}
 
 // In the middle of fluid: of every other voxel along each axis, those that have tagging that far
 // off to all six sides.
@@ -56,25 +53,17 @@ std::optional<double> deepTaggedHu(const PreparedColon& colon) {
 
 // Standard deviation of the blur across the wall's edge: in the median of its places, by how fast
 // the HU rise through the surface.
-std::optional<double> edgeBlurMm(const PreparedColon& colon, const WallEvidence& evidence,
-                                 double softHu) {
+std::optional<double> edgeBlurMm(const PreparedColon& colon, const WallEvidence& evidence) {
     constexpr double offMm = 0.5;
-    constexpr std::size_t places = 20000;
     const glm::dmat4 voxelFromPatient = colon.cleansed.grid().voxelFromPatient();
-    const std::size_t count = evidence.samples.mesh.vertices.size();
-    const std::size_t step = std::max<std::size_t>(1, count / places);
-    const double gas = gasHu(colon);
+    const EdgeScale scale = edgeScale(colon, evidence);
     std::vector<double> blurs;
-    for (std::size_t v = 0; v < count; v += step) {
-        if (evidence.wet[v] || evidence.unseen[v] || evidence.untagged[v]) continue;
-        const glm::dvec3 at = evidence.samples.mesh.vertices[v],
-                         off = offMm * glm::dvec3(evidence.shapes[v].intoWall);
-        const auto share = [&](glm::dvec3 p) {
-            const double hu =
-                trilinear(colon.cleansed, glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)));
-            return (hu - gas) / (softHu - gas);
+    for (const EdgeLine& line : edgeLines(evidence)) {
+        const auto share = [&](double mm) {
+            const glm::dvec3 voxel(voxelFromPatient * glm::dvec4(line.at(mm), 1.0));
+            return scale.shareOf(trilinear(colon.cleansed, voxel));
         };
-        const double before = share(at - off), behind = share(at + off);
+        const double before = share(-offMm), behind = share(offMm);
         if (before < 0.02 || behind > 0.98 || behind <= before) continue;
         blurs.push_back(2.0 * offMm / (normalQuantile(behind) - normalQuantile(before)));
     }
@@ -88,10 +77,10 @@ ResidueFilms::ResidueFilms(const PreparedColon& colon, const WallEvidence& evide
     : softHu_(evidence.statistics.wallHu) {
     const auto tagged = deepTaggedHu(colon);
     if (!tagged || *tagged < softHu_ + 2.0 * brighterThanTissueHu) return;
-    const auto blur = edgeBlurMm(colon, evidence, softHu_);
+    const auto blur = edgeBlurMm(colon, evidence);
     if (!blur) return;
     taggedHu_ = *tagged, blurMm_ = *blur;
-    const double gas = gasHu(colon);
+    const double gas = edgeScale(colon, evidence).gasHu;
     for (int n = 0; n <= thicknesses; ++n) {
         const double e = n * thicknessStepMm;
         const auto hu = [&](double mm) {

@@ -1,7 +1,7 @@
 #include "cad/standing_height.h"
 
-#include "cad/quantile.h"
 #include "cad/wall_quadric.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>

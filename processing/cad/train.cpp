@@ -61,12 +61,9 @@ std::vector<PlaceWitness> witnessesOf(const TrainingCase& each, const Probabilit
     return witnesses;
 }
 
-// Whether it is a polyp; empty where it is neither to be praised nor blamed.
+// As TrueLesion::isPolyp; bare wall (−1) is none.
 std::optional<bool> truthOf(const TrainingCase& each, int lesion) {
-    if (lesion < 0) return false;
-    const TrueLesion& is = each.truth[std::size_t(lesion)];
-    if (is.hyperplastic()) return std::nullopt;
-    return is.neoplastic;
+    return lesion < 0 ? false : each.truth[std::size_t(lesion)].isPolyp();
 }
 
 // Of each case the number of its study, from 0 on.

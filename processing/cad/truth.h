@@ -32,6 +32,10 @@ struct TrueLesion {
     double distanceMm(glm::dvec3 placeMm) const;
     /// A small benign growth of mucosa, which looks like a polyp and is one to a reader.
     bool hyperplastic() const { return kind == "hyperplastic"; }
+    /// Whether who tells it is right; empty: neither praised nor blamed.
+    std::optional<bool> isPolyp() const {
+        return hyperplastic() ? std::nullopt : std::optional(neoplastic);
+    }
     /// Mostly in fluid or stool without tagging, whose HU are near its own: most scans do not show
     /// it.
     bool hidden() const { return untaggedShare > 0.5; }

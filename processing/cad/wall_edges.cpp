@@ -1,6 +1,6 @@
 #include "cad/wall_edges.h"
 
-#include "cad/quantile.h"
+#include "core/quantile.h"
 #include "core/volume.h"
 
 #include <algorithm>

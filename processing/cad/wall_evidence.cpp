@@ -2,9 +2,9 @@
 
 #include "cad/biopsy_transfer.h"
 #include "cad/gaussian_kernel.h"
-#include "cad/quantile.h"
 #include "core/bridges.h"
 #include "core/ct_scan.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <array>

@@ -210,11 +210,8 @@ void renumber(TriMesh& mesh) {
 // About how many it takes, rather too many: memory that is set aside and not used costs nothing.
 std::size_t expectedSamples(const TriMesh& surface, double mostSpacingMm) {
     double areaMm2 = 0.0;
-    for (const glm::ivec3& t : surface.triangles) {
-        const glm::dvec3 a = surface.vertices[std::size_t(t.x)];
-        areaMm2 += 0.5 * glm::length(glm::cross(surface.vertices[std::size_t(t.y)] - a,
-                                                surface.vertices[std::size_t(t.z)] - a));
-    }
+    for (const glm::ivec3& t : surface.triangles)
+        areaMm2 += triangleAreaMm2(surface, t);
     return surface.vertices.size() + std::size_t(4.0 * areaMm2 / (mostSpacingMm * mostSpacingMm));
 }
 

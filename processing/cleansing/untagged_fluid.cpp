@@ -1,6 +1,7 @@
 #include "cleansing/untagged_fluid.h"
 
 #include "core/crop.h"
+#include "core/quantile.h"
 #include "core/voxel_sweep.h"
 
 #include <algorithm>
@@ -85,9 +86,7 @@ void takeOutUntagged(Volume<std::int16_t>& hu, Volume<std::uint8_t>& labels,
         if (shares[n] == whole) deep.push_back(out[at]);
     }
     std::vector<std::int16_t>& fluid = deep.empty() ? any : deep;
-    const auto middle = fluid.begin() + std::ptrdiff_t(fluid.size() / 2);
-    std::nth_element(fluid.begin(), middle, fluid.end());
-    const double fallHu = std::max(0.0, *middle - airHu);
+    const double fallHu = std::max(0.0, medianOf(fluid) - airHu);
     for (std::size_t n = 0; n < shares.size(); ++n) {
         if (shares[n] == 0) continue;
         std::int16_t& voxel = out[grid.index(lo + box.voxelAt(n))];

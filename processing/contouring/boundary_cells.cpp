@@ -1,5 +1,7 @@
 #include "contouring/boundary_cells.h"
 
+#include "core/ct_scan.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -35,9 +37,10 @@ public:
             std::memcpy(&words[n], rows_[n] + i, 8);
         if ((words[0] | words[1] | words[2] | words[3]) == 0) return true;
         constexpr std::uint64_t ones = 0x0101010101010101u;
-        // Labels run to 3; a byte is non-zero where bit 0 or 1 is set.
+        // A byte is not 0 where one of its bits 0 to 2 is set.
+        static_assert(int(LumenLabel::untagged) < 8);
         for (std::uint64_t word : words) {
-            if (((word | word >> 1) & ones) != ones) return false;
+            if (((word | word >> 1 | word >> 2) & ones) != ones) return false;
         }
         return true;
     }

@@ -1,8 +1,7 @@
 #include "core/colon_edits.h"
 
+#include "core/patient_point.h"
 #include "core/printed_text.h"
-
-#include <cmath>
 
 #include <nlohmann/json.hpp>
 
@@ -23,9 +22,13 @@ Json points(const std::vector<glm::dvec3>& all) {
 glm::dvec3 pointFrom(const Json& json) {
     const glm::dvec3 p{json.at(0).get<double>(), json.at(1).get<double>(),
                        json.at(2).get<double>()};
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-        throw std::invalid_argument("a point is nowhere");
+    if (!isPatientPoint(p)) throw std::invalid_argument("a point is nowhere");
     return p;
+}
+CutBall ballFrom(const Json& json) {
+    const CutBall ball{pointFrom(json.at("center_mm")), json.at("radius_mm").get<double>()};
+    if (!isCutRadius(ball.radiusMm)) throw std::invalid_argument("a ball's radius is none");
+    return ball;
 }
 
 }  // namespace
@@ -53,8 +56,7 @@ Result<ColonEdits> editsFromJson(const std::string& text) {
         for (const Json& p : json.at("excludes_mm"))
             edits.excludesMm.push_back(pointFrom(p));
         for (const Json& cut : json.at("cuts"))
-            edits.cuts.push_back(
-                {pointFrom(cut.at("center_mm")), cut.at("radius_mm").get<double>()});
+            edits.cuts.push_back(ballFrom(cut));
         for (const Json& join : json.at("joins_mm"))
             edits.joins.emplace_back(pointFrom(join.at(0)), pointFrom(join.at(1)));
         return edits;

@@ -18,6 +18,11 @@ struct CutBall {
     bool operator==(const CutBall&) const = default;
 };
 
+/// Whether a ball to cut with may be as large: 0 < r ≤ 100 mm.
+inline bool isCutRadius(double mm) {
+    return mm > 0.0 && mm <= 100.0;
+}
+
 /// Points are the patient's (LPS, mm).
 struct ColonEdits {
     /// The tube pieces at these points, from neck to neck, are colon, or are not.
@@ -34,7 +39,8 @@ struct ColonEdits {
 /// The `edits` product: {"seeds_mm":[[x,y,z]…],"excludes_mm":[…],"cuts":[{"center_mm":…,
 /// "radius_mm":r}…],"joins_mm":[[[x,y,z],[x,y,z]]…]}. Reads back as the same edits, bit for bit.
 std::string editsJson(const ColonEdits& edits);
-/// Fails (badInput) where the text is none of these.
+/// Fails (badInput) where the text is none of these, a point is none of a patient (isPatientPoint)
+/// or a ball too large to cut with.
 Result<ColonEdits> editsFromJson(const std::string& text);
 
 }  // namespace haustra

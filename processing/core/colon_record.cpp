@@ -22,6 +22,11 @@ Json place(glm::dvec3 p) {
 
 }  // namespace
 
+const char* toString(BodyContent content) {
+    constexpr const char* names[] = {"gas", "tagged material", "fluid without tagging"};
+    return names[int(content)];
+}
+
 const char* toString(ColonPart part) {
     static const char* const names[colonParts] = {
         "rectum",           "sigmoid",         "descending colon", "splenic flexure",
@@ -130,12 +135,15 @@ Json jsonOf(const RunnerUp& up) {
             {"place_mm", place(up.placeMm)}};
 }
 
+const char* nameOf(BodyContent content) {
+    constexpr const char* names[] = {"gas", "tagged", "untagged"};
+    return names[int(content)];
+}
+
 Json jsonOf(const LeftOutBody& body) {
     return {{"center_mm", place(body.centreMm)},
             {"volume_ml", rounded(body.volumeMl)},
-            {"content", body.gas        ? "gas"
-                        : body.untagged ? "untagged"
-                                        : "tagged"},
+            {"content", nameOf(body.content)},
             {"nearest", toString(body.nearest)},
             {"distance_mm", rounded(body.distanceMm)},
             {"opens", body.opens},
@@ -194,9 +202,9 @@ Json jsonOf(const std::array<SegmentDistension, colonSegments>& distension) {
 }  // namespace
 
 std::string qualityJson(const ColonRecord& record) {
-    double gasMl = 0.0, taggedMl = 0.0;
+    std::array<double, 3> leftOutMl{};  // by BodyContent
     for (const LeftOutBody& body : record.leftOut)
-        (body.gas ? gasMl : taggedMl) += body.volumeMl;
+        leftOutMl[std::size_t(body.content)] += body.volumeMl;
     const auto& end = record.endsAt;
     return Json{{"confidence", rounded(record.confidence)},
                 {"chain_confidence", rounded(record.chainConfidence)},
@@ -207,10 +215,11 @@ std::string qualityJson(const ColonRecord& record) {
                 {"pieces", listOf(record.pieces)},
                 {"junctions", listOf(record.junctions)},
                 {"runners_up", listOf(record.runnersUp)},
-                {"left_out_gas_ml", rounded(gasMl)},
-                {"left_out_tagged_ml", rounded(taggedMl)},
+                {"left_out_gas_ml", rounded(leftOutMl[0])},
+                {"left_out_tagged_ml", rounded(leftOutMl[1])},
+                {"left_out_untagged_ml", rounded(leftOutMl[2])},
                 {"left_out", listOf(record.leftOut)},
-                {"ends_at", end ? Json{end->x, end->y, end->z} : Json()},
+                {"ends_at", end ? place(*end) : Json()},
                 {"rebuilt_walls", listOf(record.walls)},
                 {"untagged_fluid", listOf(record.untaggedPools)},
                 {"cut_ends", listOf(record.cutEnds)},

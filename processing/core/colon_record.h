@@ -54,15 +54,18 @@ struct ColonJunction {
     double confidence = 1.0;  ///< share of the likely chains that have it
 };
 
+/// What most of a body is.
+enum class BodyContent : std::uint8_t { gas, tagged, untagged };
+const char* toString(BodyContent content);  ///< "gas", "tagged material", "fluid without tagging"
+
 /// Bowel, or what may be, that is not part of the colon that was found.
 struct LeftOutBody {
     glm::dvec3 centreMm{0.0};
     double volumeMl = 0.0;
-    bool gas = true;  ///< mostly gas; else tagged
+    BodyContent content = BodyContent::gas;
     ColonPart nearest = ColonPart::rectum;
     double distanceMm = 0.0;  ///< from its centre to the nearest piece's centre, less both radii
     bool opens = false;       ///< a door between it and the colon had to be closed
-    bool untagged = false;    ///< mostly fluid without tagging
     bool likeColon = false;   ///< as wide as colon, and likely to be by its place and folds
 };
 

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/printed_text.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -35,9 +36,7 @@ double medianAround(const std::vector<double>& steps, std::size_t k) {
     std::vector<double> around(
         steps.begin() + std::ptrdiff_t(k - std::min(k, reach)),
         steps.begin() + std::ptrdiff_t(std::min(k + reach + 1, steps.size())));
-    const auto middle = around.begin() + std::ptrdiff_t(around.size() / 2);
-    std::nth_element(around.begin(), middle, around.end());
-    return *middle;
+    return medianOf(around);
 }
 
 }  // namespace

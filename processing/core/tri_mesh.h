@@ -1,6 +1,7 @@
 // Triangle meshes in patient space.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,16 @@ struct TriMesh {
     std::vector<glm::dvec3> vertices;
     std::vector<glm::ivec3> triangles;
 };
+
+inline double triangleAreaMm2(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
+    return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+/// `triangle`: three of the mesh's vertices, whether one of its triangles or not.
+inline double triangleAreaMm2(const TriMesh& mesh, const glm::ivec3& triangle) {
+    return triangleAreaMm2(mesh.vertices[std::size_t(triangle.x)],
+                           mesh.vertices[std::size_t(triangle.y)],
+                           mesh.vertices[std::size_t(triangle.z)]);
+}
 
 /// The nearest point whose coordinates are multiples of 2⁻²⁶ mm: less than the rounding of what is
 /// hundreds of mm from its origin, so that a mesh that is moved, and moved back, is the same to the

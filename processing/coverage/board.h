@@ -49,13 +49,12 @@ struct BoardView {
 /// quarters (checkerboards) or dark or light clusters with the moments of a filled ellipse (dots),
 /// at several scales, from which a square lattice grows from neighbour to neighbour: each step is
 /// foretold by those before it. Dots are asymmetric where the lattice lies at 45° to the rows. A
-/// point of a checkerboard is where the gradients around it are perpendicular to what leads to
-/// them (Förstner; OpenCV's cornerSubPix); one of a dot is the cluster's centre, weighted by
-/// contrast: the centre of the disc's picture, not the picture of the disc's centre (calibrate
-/// corrects for it).
-/// A part of the board, from half of its points, is a view too: the pose takes up where on the
-/// board it is. Mirrored pictures likewise are views of the board from behind.
-/// Fails (noResult), saying what was seen instead. A second for a large picture; any thread.
+/// point of a checkerboard is the saddle of the quadric that fits the brightness around it (Placht
+/// et al., ECCV 2014); one of a dot is the cluster's centre, weighted by contrast: the centre of
+/// the disc's picture, not the picture of the disc's centre (calibrate corrects for it). A part of
+/// the board, from half of its points, is a view too: the pose takes up where on the board it is.
+/// Mirrored pictures likewise are views of the board from behind. Fails (noResult), saying what was
+/// seen instead, or (badInput) where it is no board. A second for a large picture; any thread.
 Result<BoardView> findBoard(const Image& picture, const Board& board);
 
 /// The ellipse around what is not black in any of the pictures, which are of one size, by least

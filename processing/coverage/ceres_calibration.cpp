@@ -1,3 +1,4 @@
+#include "core/quantile.h"
 #include "coverage/calibration_libraries.h"
 #include "coverage/lens_projection.h"
 
@@ -412,9 +413,7 @@ private:
                 radii.push_back(std::sqrt(view.areas[n] / (std::numbers::pi * perSquareMm)));
             }
         }
-        const auto middle = radii.begin() + std::ptrdiff_t(radii.size() / 2);
-        std::nth_element(radii.begin(), middle, radii.end());
-        return *middle;
+        return medianOf(radii);
     }
 
     Result<void> correctDots(Calibration& result) {

@@ -11,9 +11,9 @@
 
 namespace haustra::coverage {
 
-/// What a lens raises the angle θ to before anything else, s(θ): the projections that lenses are
-/// designed to (equations 2.1 to 2.5, each over f; the source prints the orthogonal one as
-/// 2f sin θ, twice what it is).
+/// The projections that lenses are designed to: how far from the middle an ideal lens shows a ray
+/// that makes the angle θ with its axis, s(θ), in units of the focal length (equations 2.1 to 2.5,
+/// each over f; the source prints the orthogonal one as 2f sin θ, twice what it is).
 enum class Projection {
     equidistance,   ///< θ
     stereographic,  ///< 2 tan(θ/2)

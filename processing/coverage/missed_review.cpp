@@ -63,10 +63,7 @@ std::vector<MissedPatch> CoverageWall::missed(const std::vector<Visibility>& see
 }
 
 double CoverageWall::areaMm2(std::size_t triangle) const {
-    const glm::ivec3 t = mesh.triangles[triangle];
-    const glm::dvec3 a = mesh.vertices[std::size_t(t.x)];
-    return 0.5 * glm::length(glm::cross(mesh.vertices[std::size_t(t.y)] - a,
-                                        mesh.vertices[std::size_t(t.z)] - a));
+    return triangleAreaMm2(mesh, mesh.triangles[triangle]);
 }
 
 std::optional<CenterlineCamera> cameraForPatch(const SightTree& tree, const CoverageWall& wall,

@@ -1,3 +1,4 @@
+#include "core/quantile.h"
 #include "coverage/calibration_libraries.h"
 #include "coverage/square_lattice.h"
 
@@ -420,9 +421,7 @@ Result<FieldEllipse> findField(const std::vector<Image>& pictures) try {
         for (const glm::dvec2& p : rim)
             off.push_back(distanceOf(*field, p));
         std::vector<double> sorted = off;
-        std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2),
-                         sorted.end());
-        const double most = std::max(1.5, 2.5 * sorted[sorted.size() / 2]);
+        const double most = std::max(1.5, 2.5 * medianOf(sorted));
         kept.clear();
         for (std::size_t n = 0; n < rim.size(); ++n)
             if (off[n] <= most) kept.push_back(rim[n]);

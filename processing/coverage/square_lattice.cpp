@@ -1,5 +1,7 @@
 #include "coverage/square_lattice.h"
 
+#include "core/quantile.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,9 +72,7 @@ private:
             }
         }
         if (off.empty()) return true;  // three a side
-        const auto middle = off.begin() + std::ptrdiff_t(off.size() / 2);
-        std::nth_element(off.begin(), middle, off.end());
-        return *middle < 0.125;
+        return medianOf(off) < 0.125;
     }
     /// How many points that are no cells lie nearer to one than its neighbours do.
     std::size_t strangers() const {

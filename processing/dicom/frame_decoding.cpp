@@ -188,7 +188,7 @@ private:
     }
 
     const HuTable& table(const StoredFormat& format, const Rescale& rescale) {
-        if (!table_ || !(table_->rescale() == rescale))
+        if (!table_ || !table_->isOf(format, rescale))
             table_ = std::make_unique<HuTable>(format, rescale);
         return *table_;
     }

@@ -17,10 +17,12 @@ struct StoredFormat {
 
     struct PaddingRange {
         int first = 0, last = 0;  ///< inclusive, as stored values
+        bool operator==(const PaddingRange&) const = default;
     };
     std::optional<PaddingRange> padding;  ///< values that stand for "outside the field of view"
 
     bool valid() const;
+    bool operator==(const StoredFormat&) const = default;
 };
 
 /// HU = slope · stored + intercept.
@@ -42,9 +44,12 @@ public:
     HuTable(const StoredFormat& format, const Rescale& rescale);
 
     std::int16_t operator[](std::uint16_t cell) const { return hu_[cell]; }
-    const Rescale& rescale() const { return rescale_; }
+    bool isOf(const StoredFormat& format, const Rescale& rescale) const {
+        return format == format_ && rescale == rescale_;
+    }
 
 private:
+    StoredFormat format_;
     Rescale rescale_;
     std::array<std::int16_t, 65536> hu_;
 };

@@ -91,10 +91,8 @@ constexpr std::size_t mostClasses = 4;
 
 double areaOf(const TriMesh& mesh) {
     double area = 0.0;
-    for (const glm::ivec3& t : mesh.triangles) {
-        const glm::dvec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
-        area += 0.5 * glm::length(glm::cross(b - a, c - a));
-    }
+    for (const glm::ivec3& t : mesh.triangles)
+        area += triangleAreaMm2(mesh, t);
     return area;
 }
 

@@ -161,8 +161,6 @@ std::optional<LoopDisc> spanInPlane(const std::vector<glm::dvec3>& polygon) {
         delaunay.insert(Point2(p.x, p.y))->info() = int(n + disc.interior.size());
         disc.interior.push_back(plane->origin + p.x * plane->u + p.y * plane->v);
     }
-    for (auto face : delaunay.finite_face_handles())
-        face->info() = 0;
     // Inside is what an odd number of outline edges parts from infinity.
     std::vector<Delaunay::Face_handle> stack{delaunay.infinite_face()};
     for (auto face : delaunay.all_face_handles())

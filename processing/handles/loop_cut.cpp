@@ -61,11 +61,6 @@ std::vector<glm::dvec3> drawBack(const TriMesh& mesh, const mesh::HalfedgeMesh& 
     return moves;
 }
 
-double areaOf(const TriMesh& mesh, const glm::ivec3& t) {
-    const glm::dvec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
-    return 0.5 * glm::length(glm::cross(b - a, c - a));
-}
-
 /// Adds a disc over the `rim` vertices, which have moved by `moves`.
 void addDisc(TriMesh& mesh, const LoopDisc& disc, const std::vector<int>& rim,
              const std::vector<glm::dvec3>& moves, bool reversed) {
@@ -106,7 +101,7 @@ LoopCut cutAlong(const TriMesh& mesh, const mesh::HalfedgeMesh& halves, const me
     addDisc(cut.mesh, disc, leftRim, leftMoves, true);
     addDisc(cut.mesh, disc, rightRim, rightMoves, false);
     for (std::size_t t = cut.firstFilled; t < cut.mesh.triangles.size(); ++t)
-        cut.filledAreaMm2 += areaOf(cut.mesh, cut.mesh.triangles[t]);
+        cut.filledAreaMm2 += triangleAreaMm2(cut.mesh, cut.mesh.triangles[t]);
     return cut;
 }
 

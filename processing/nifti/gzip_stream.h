@@ -20,7 +20,8 @@ public:
 
     /// Fills `bytes` wholly, or fails: the file is truncated or its compression damaged.
     Result<void> read(std::span<std::byte> bytes);
-    /// Reads on to the end of the compressed data, so that its checksum is verified.
+    /// Reads up to 64 KiB more: where the compressed data end within that, their checksum is
+    /// verified. Fails (badInput) where they are damaged.
     Result<void> finish();
     bool compressed() const { return compressed_; }
     /// No file of this size holds more bytes than this once decompressed.

@@ -76,9 +76,7 @@ std::vector<Place> spreadOver(const TriMesh& mesh, int count) {
     std::vector<double> until(mesh.triangles.size());
     double total = 0.0;
     for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-        const glm::ivec3 t = mesh.triangles[n];
-        total += 0.5 * glm::length(glm::cross(mesh.vertices[t.y] - mesh.vertices[t.x],
-                                              mesh.vertices[t.z] - mesh.vertices[t.x]));
+        total += triangleAreaMm2(mesh, mesh.triangles[n]);
         until[n] = total;
     }
     std::vector<Place> places;

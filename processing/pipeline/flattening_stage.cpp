@@ -36,13 +36,6 @@ Result<flatten::PunchedTube> punch(const TriMesh& surface, const Centerline& cen
     return flatten::punchEnds(surface, ends, outwards);
 }
 
-double nearestArcMm(const Centerline& centerline, const glm::dvec3& placeMm) {
-    const auto nearest = std::ranges::min_element(centerline.points, {}, [&](const auto& point) {
-        return glm::distance(point.positionMm, placeMm);
-    });
-    return nearest->arcMm;
-}
-
 // Of the camera that looks at the wall there.
 double arcAtRowMm(const FlatMap& map, double y) {
     const auto nearest = std::ranges::min_element(
@@ -136,7 +129,7 @@ Result<ProductKey> flattenSurface(Preparation& preparation, const ProductKey& su
         flattening.threads = options.threads;
         flattening.progress = [&](double fraction) { progress(0.1 + 0.8 * fraction); };
         flattening.placeName = [&](const glm::dvec3& placeMm) {
-            return std::to_string(std::lround(nearestArcMm(centerline, placeMm))) +
+            return std::to_string(std::lround(nearestArc(centerline, placeMm))) +
                    " mm of the centerline";
         };
         auto flat = TRY(flatten::flattenTube(punched.tube, punched.firstLoop, flattening));

@@ -144,11 +144,7 @@ Result<void> Preparation::noteBridgedWall() {
     const auto labels = TRY(target_.readVolume<std::uint8_t>(product::lumen));
     const auto bridged = bridgedTriangles(surface, labels);
     for (std::size_t n = 0; n < bridged.size(); ++n) {
-        if (!bridged[n]) continue;
-        const glm::ivec3 t = surface.triangles[n];
-        const glm::dvec3 a = surface.vertices[std::size_t(t.x)];
-        report_.bridgedMm2 += 0.5 * glm::length(glm::cross(surface.vertices[std::size_t(t.y)] - a,
-                                                           surface.vertices[std::size_t(t.z)] - a));
+        if (bridged[n]) report_.bridgedMm2 += triangleAreaMm2(surface, surface.triangles[n]);
     }
     if (report_.bridgedMm2 > 0.0) {
         note("surface: " + exactText(std::round(report_.bridgedMm2)) +

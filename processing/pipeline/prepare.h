@@ -19,11 +19,10 @@ struct PrepareOptions {
     /// where `lumenMask` is not: the mask is then of the scan that the case holds already, or of
     /// none.
     std::filesystem::path series;
-    std::string seriesUid;  ///< which series of the folder; empty: its only one
-    std::filesystem::path
-        lumenMask;  ///< NIfTI; replaces the segmentation stage; not 0 is lumen, 2 is tagged
-    std::string organ = "colon";  ///< a built-in profile or a profile's file (organs/README.md)
-    std::string until;            ///< last stage to run; empty: all. Not import without a series
+    std::string seriesUid;            ///< which series of the folder; empty: its only one
+    std::filesystem::path lumenMask;  ///< NIfTI; replaces the segmentation stage (readLumenMask)
+    std::string organ = "colon";      ///< a built-in profile or a profile's file (organs/README.md)
+    std::string until;  ///< last stage to run; empty: all. Not import without a series
     /// One of several scans of a case ("supine", "prone"): it is kept as the case "CASE.SCAN".
     std::string scan;
     bool replace = false;  ///< another scan may take the place of the one that the case is of

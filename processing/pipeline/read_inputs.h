@@ -36,7 +36,8 @@ struct MaskInput {
     std::vector<std::string> notes;
 };
 
-/// A segmentation of the lumen in NIfTI: 0 outside, 2 tagged, anything else air. `scanGrid`, where
+/// A segmentation of the lumen in NIfTI: 0 outside, 2 tagged fluid, 4 fluid without tagging (as
+/// LumenLabel has them), anything else gas. `scanGrid`, where
 /// given, is the scan's grid; the mask must be on it to within a twentieth of a voxel, with its
 /// axes in any order, and gets it. Otherwise the mask comes in axial order.
 Result<MaskInput> readLumenMask(const std::filesystem::path& file, const Grid* scanGrid,

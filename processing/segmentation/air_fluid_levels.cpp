@@ -2,6 +2,7 @@
 
 #include "core/flood_fill.h"
 #include "core/parallel.h"
+#include "core/quantile.h"
 #include "segmentation/bowel_contents.h"
 
 #include <algorithm>
@@ -77,11 +78,8 @@ std::vector<LevelColumn> columnsOfSlice(const Volume<std::int16_t>& hu, const Ti
     return columns;
 }
 
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0.0;
-    const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+double medianOrZero(std::vector<double>& values) {
+    return values.empty() ? 0.0 : medianOf(values);
 }
 
 /// Where HU first rises above `value` on the way down from a column's gas, in voxels from there.
@@ -108,7 +106,7 @@ double fluidUnder(const Volume<std::int16_t>& hu, const LevelColumn& column, Gra
         if (!hu.grid().contains(v) || hu.at(v) <= taggedAboveHu) break;
         if (depth > 0) values.push_back(hu.at(v));
     }
-    return values.empty() ? double(hu.at(column.below)) : median(values);
+    return values.empty() ? double(hu.at(column.below)) : medianOrZero(values);
 }
 
 /// Height, roughness and step of a level's surface, to a fraction of a voxel; columns of another
@@ -129,8 +127,8 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
                                    crossing(hu, from, down, 0.5 * (gas + soft))));
     }
     std::vector<double> sorted = heights;
-    level.heightMm = median(sorted);
-    level.stepMm = median(steps);
+    level.heightMm = medianOrZero(sorted);
+    level.stepMm = medianOrZero(steps);
     const double mostOffMm = std::max(offHeightMm, 0.5 * voxelMm);
     const double contrast = level.fluidHu - soft;
     std::vector<LevelColumn> own;
@@ -142,7 +140,7 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
         if (ratio < otherFluid || ratio > 1.0 / otherFluid) continue;
         own.push_back(level.columns[n]);
     }
-    level.roughnessMm = median(heights);
+    level.roughnessMm = medianOrZero(heights);
     level.columns = std::move(own);
 }
 
@@ -174,8 +172,7 @@ void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t
         }
     }
     if (samples.empty()) return;
-    std::nth_element(samples.begin(), samples.begin() + samples.size() / 2, samples.end());
-    level.fluidHu = samples[samples.size() / 2];
+    level.fluidHu = medianOf(samples);
     measureSurface(level, hu, tissue, down);
     level.areaMm2 = double(level.columns.size()) * columnMm2;
     if (level.roughnessMm > roughestMm || level.areaMm2 < smallestLevelMm2) return;

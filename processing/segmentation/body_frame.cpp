@@ -1,5 +1,7 @@
 #include "segmentation/body_frame.h"
 
+#include "core/quantile.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -34,13 +36,8 @@ BodyFrame findBodyFrame(std::span<const glm::vec3> softTissueMm, double lowMm, d
     BodyFrame frame;
     frame.lowMm = lowMm, frame.highMm = std::max(highMm, lowMm + 1.0);
     if (x.size() < 100) return frame;
-    const auto quantile = [](std::vector<double>& values, double share) {
-        const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-        std::nth_element(values.begin(), at, values.end());
-        return *at;
-    };
-    const double left = quantile(x, 0.02), right = quantile(x, 0.98);
-    const double front = quantile(y, 0.02), back = quantile(y, 0.98);
+    const double left = quantileOf(x, 0.02), right = quantileOf(x, 0.98);
+    const double front = quantileOf(y, 0.02), back = quantileOf(y, 0.98);
     frame.middleMm = {0.5 * (left + right), 0.5 * (front + back), 0.5 * (lowMm + highMm)};
     frame.halfMm = {std::max(1.0, 0.5 * (right - left)), std::max(1.0, 0.5 * (back - front))};
     return frame;

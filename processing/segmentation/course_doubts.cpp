@@ -78,7 +78,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     // fluid like it none had.
     for (const bool gas : {true, false}) {
         const auto like = std::ranges::find_if(record.leftOut, [&](const LeftOutBody& body) {
-            return body.likeColon && body.gas == gas;
+            return body.likeColon && (body.content == BodyContent::gas) == gas;
         });
         if (like == record.leftOut.end()) continue;
         doubt(gas ? 0.6 : 0.25,
@@ -88,7 +88,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     }
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
-        if (!body.gas || body.volumeMl < tellMl) continue;
+        if (body.content != BodyContent::gas || body.volumeMl < tellMl) continue;
         doubt(0.03 * std::min(1.0, body.volumeMl / muchMl) + (body.opens ? 0.05 : 0.0),
               printed("%.0f ml of gas near the %s may be colon", body.volumeMl,
                       toString(body.nearest)));

@@ -1,5 +1,6 @@
 #include "segmentation/hu_range_lumen.h"
 
+#include "core/patient_point.h"
 #include "core/voxel_sweep.h"
 #include "topology/distance_field.h"
 #include "topology/run_components.h"
@@ -117,11 +118,6 @@ std::string pointText(glm::dvec3 p) {
     return round(p.x) + "," + round(p.y) + "," + round(p.z) + " mm";
 }
 
-// A coordinate beyond every int would have no voxel.
-bool sane(glm::dvec3 pointMm) {
-    return glm::all(glm::lessThan(glm::abs(pointMm), glm::dvec3(1e6)));
-}
-
 Result<std::vector<char>> chooseBodies(const topology::RunComponents& components, const Grid& grid,
                                        const HuRangeOptions& options) {
     const auto& bodies = components.components();
@@ -129,7 +125,7 @@ Result<std::vector<char>> chooseBodies(const topology::RunComponents& components
     const auto lookUp = [&](const std::vector<glm::dvec3>& points,
                             std::vector<char>& found) -> Result<void> {
         for (const glm::dvec3& point : points) {
-            const int at = sane(point) ? componentNear(components, grid, point) : -1;
+            const int at = isPatientPoint(point) ? componentNear(components, grid, point) : -1;
             if (at < 0) {
                 return refused(ErrorKind::badInput,
                                "there is no content of the organ's HU within " +

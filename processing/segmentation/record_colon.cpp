@@ -174,9 +174,8 @@ private:
     }
 
     LeftOutBody leftOut(const TubePiece& piece, bool opens) const {
-        LeftOutBody body{
-            piece.centreMm, piece.volumeMl,        piece.mostlyGas(), ColonPart::rectum, 1e9,
-            opens,          piece.mostlyUntagged()};
+        LeftOutBody body{piece.centreMm, piece.volumeMl, piece.content(), ColonPart::rectum, 1e9,
+                         opens};
         for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
             const ChainNode& kept = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
             const double mm =
@@ -331,9 +330,9 @@ private:
             std::string places;
             for (std::size_t m = n; m < said.size(); ++m) {
                 const LeftOutBody& body = made_.leftOut[m];
-                if (said[m] || body.gas != first.gas || body.untagged != first.untagged ||
-                    body.nearest != first.nearest || body.opens != first.opens ||
-                    body.likeColon != first.likeColon || (!body.opens && body.volumeMl < tellMl))
+                if (said[m] || body.content != first.content || body.nearest != first.nearest ||
+                    body.opens != first.opens || body.likeColon != first.likeColon ||
+                    (!body.opens && body.volumeMl < tellMl))
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
@@ -342,10 +341,7 @@ private:
             }
             if (bodies == 0) continue;
             made_.warnings.push_back(
-                printed("%.0f ml of %s nearest to the %s%s, at ", sumMl,
-                        first.gas        ? "gas"
-                        : first.untagged ? "fluid without tagging"
-                                         : "tagged material",
+                printed("%.0f ml of %s nearest to the %s%s, at ", sumMl, toString(first.content),
                         toString(first.nearest),
                         first.opens ? " lie open to the colon and were taken for small bowel"
                         : first.likeColon

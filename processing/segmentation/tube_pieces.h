@@ -1,6 +1,7 @@
 // The bowel's contents cut at their necks into pieces, and what joins or parts the pieces.
 #pragma once
 
+#include "core/colon_record.h"
 #include "core/ct_scan.h"
 
 #include <cstdint>
@@ -20,7 +21,11 @@ struct TubePiece {
     double surfaceMm2 = 0.0;              ///< faces towards anything else than the piece
     double excludedAirMm2 = 0.0;          ///< … towards the room's air and lung
     bool mostlyGas() const { return gasVoxels >= taggedVoxels + untaggedVoxels; }
-    bool mostlyUntagged() const { return untaggedVoxels > gasVoxels + taggedVoxels; }
+    BodyContent content() const {
+        if (mostlyGas()) return BodyContent::gas;
+        return untaggedVoxels > gasVoxels + taggedVoxels ? BodyContent::untagged
+                                                         : BodyContent::tagged;
+    }
 };
 
 /// One connected patch of faces over which two pieces touch.

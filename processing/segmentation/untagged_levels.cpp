@@ -3,6 +3,7 @@
 #include "core/ct_scan.h"
 #include "core/flood_fill.h"
 #include "core/parallel.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -108,12 +109,6 @@ std::pair<double, std::size_t> commonHeight(const std::vector<Floor>& patch) {
         if (last - first > best.second) best = {heights[(first + last) / 2], last - first};
     }
     return best;
-}
-
-double median(std::vector<double> values) {
-    const auto half = values.begin() + std::ptrdiff_t(values.size() / 2);
-    std::nth_element(values.begin(), half, values.end());
-    return *half;
 }
 
 /// Columns of one height, as a picture over both axes across gravity.
@@ -275,7 +270,7 @@ std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Gr
         beneath.push_back(floor.huBeneath), heights.push_back(floor.heightMm);
     }
     const double softHu = tissue.meanHu[int(Tissue::soft)], fatHu = tissue.meanHu[int(Tissue::fat)];
-    level.fluidHu = median(std::move(beneath)), level.heightMm = median(std::move(heights));
+    level.fluidHu = medianOf(beneath), level.heightMm = medianOf(heights);
     if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) return {};
     if (level.fluidHu < 0.5 * (softHu + fatHu)) return {};
     level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;

@@ -76,6 +76,7 @@ public:
 
     /// The products now published, sorted by name, read afresh from disk.
     Result<std::vector<ProductEntry>> products() const;
+    /// None where there is no such product, or the index cannot be read (products() says which).
     std::optional<ProductEntry> find(std::string_view product) const;
     bool has(std::string_view product, const ProductKey& key) const;
     /// The scan that the case is of. Where nothing has bound it (no UIDs are known then) its key is

@@ -40,9 +40,10 @@ Result<void> Case::publishCenterline(std::string_view product, const ProductKey&
                            p.gap ? 1.0 : 0.0});
     }
     ProductHeader header{Content::centerline, {}, digestFromHex(key.hex), {}, attributes};
-    header.grid.size = {int(samples.size()), 1, 1};
     const ProductEntry entry{std::string(product), key,
                              productFileName(product, key.hex, Content::centerline)};
+    header.grid.size =
+        TRY(elementNumbers(Content::centerline, {samples.size(), 1, 1}, folder_ / entry.file));
     return writeProduct(folder_, entry.file, header, {std::as_bytes(std::span(samples))})
         .and_then([&] { return announce(entry, outdated); });
 }

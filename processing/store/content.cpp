@@ -1,11 +1,13 @@
 #include "store/content.h"
 
 #include <algorithm>
+#include <string>
 
 namespace haustra::store {
 namespace {
 
 constexpr std::size_t mostVoxelsOrSamples = std::size_t(1) << 24;
+constexpr std::size_t mostMeshElements = std::size_t(1) << 28;
 
 template <class T>
 std::size_t voxelBytes(glm::ivec3 size) {
@@ -46,6 +48,18 @@ std::span<const ContentKind> contentKinds() {
 const ContentKind* kindOf(Content content) {
     const auto found = std::ranges::find(kinds, content, &ContentKind::content);
     return found == std::end(kinds) ? nullptr : found;
+}
+
+Result<glm::ivec3> elementNumbers(Content content, const std::array<std::size_t, 3>& counts,
+                                  const std::filesystem::path& file) {
+    const ContentKind& kind = *kindOf(content);
+    if (std::ranges::max(counts) > kind.mostElements)
+        return fail(ErrorKind::unsupported,
+                    std::string(kind.description) + " of " +
+                        std::to_string(std::ranges::max(counts)) +
+                        " elements is too large to store",
+                    file.string());
+    return glm::ivec3(counts[0], counts[1], counts[2]);
 }
 
 }  // namespace haustra::store

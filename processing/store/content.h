@@ -17,10 +17,13 @@
 // and back: volume_product.cpp, mesh_product.cpp …
 #pragma once
 
+#include "core/result.h"
 #include "core/tissue.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 
 #include <glm/glm.hpp>
@@ -67,12 +70,16 @@ const ContentKind* kindOf(Content content);
 
 std::span<const ContentKind> contentKinds();
 
+/// `counts` as the three numbers of elements of a product's file. Fails (unsupported), naming the
+/// file, where one is more than the content may have: such a file would be refused when read.
+Result<glm::ivec3> elementNumbers(Content content, const std::array<std::size_t, 3>& counts,
+                                  const std::filesystem::path& file);
+
 inline constexpr std::size_t centerlineSampleBytes = 6 * sizeof(double);
 inline constexpr std::size_t meshVertexBytes = 3 * sizeof(double);
 inline constexpr std::size_t meshTriangleBytes = 3 * sizeof(std::int32_t);
 inline constexpr std::size_t flatMapVertexBytes = 5 * sizeof(double) + sizeof(std::int32_t);
 inline constexpr std::size_t flatMapTriangleBytes = 4 * sizeof(std::int32_t);
 inline constexpr std::size_t flatMapCameraBytes = 4 * sizeof(double);
-inline constexpr std::size_t mostMeshElements = std::size_t(1) << 28;
 
 }  // namespace haustra::store

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -26,6 +27,37 @@ bool writeAll(int descriptor, std::span<const std::byte> bytes) {
     return true;
 }
 
+/// Closed and removed again, unless it has been published.
+class TemporaryFile {
+public:
+    TemporaryFile(std::filesystem::path file, unsigned permissions)
+        : file_(std::move(file)),
+          descriptor_(::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, permissions)),
+          isThere_(descriptor_ >= 0) {}
+    ~TemporaryFile() {
+        const int error = errno;  // may still be asked for
+        if (descriptor_ >= 0) ::close(descriptor_);
+        if (isThere_) ::unlink(file_.c_str());
+        errno = error;
+    }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    int descriptor() const { return descriptor_; }
+    /// False: it failed, and errno says why.
+    bool publishAs(const std::filesystem::path& name) {
+        if (::close(std::exchange(descriptor_, -1)) != 0) return false;
+        if (::rename(file_.c_str(), name.c_str()) != 0) return false;
+        isThere_ = false;
+        return true;
+    }
+
+private:
+    std::filesystem::path file_;
+    int descriptor_;
+    bool isThere_;
+};
+
 }  // namespace
 
 Result<void> writeDurably(const std::filesystem::path& folder, const std::string& name,
@@ -44,21 +76,11 @@ Result<void> writeDurably(const std::filesystem::path& folder, const std::string
                           const std::function<bool(int descriptor)>& write, unsigned permissions) {
     const std::filesystem::path temporary =
         folder / (temporaryPrefix + name + "-" + std::to_string(::getpid()));
-    const int descriptor =
-        ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, permissions);
-    if (descriptor < 0) return systemError("create", temporary);
-
-    if (!write(descriptor) || ::fsync(descriptor) != 0) {
-        const auto error = systemError("write", folder / name);
-        ::close(descriptor);
-        ::unlink(temporary.c_str());
-        return error;
-    }
-    if (::close(descriptor) != 0 || ::rename(temporary.c_str(), (folder / name).c_str()) != 0) {
-        const auto error = systemError("publish", folder / name);
-        ::unlink(temporary.c_str());
-        return error;
-    }
+    TemporaryFile file(temporary, permissions);
+    if (file.descriptor() < 0) return systemError("create", temporary);
+    if (!write(file.descriptor()) || ::fsync(file.descriptor()) != 0)
+        return systemError("write", folder / name);
+    if (!file.publishAs(folder / name)) return systemError("publish", folder / name);
     return syncFolder(folder);
 }
 

@@ -105,18 +105,13 @@ Result<void> Case::publishFlatMap(std::string_view product, const ProductKey& ke
     TRY(checkWritable());
     const ProductEntry entry{std::string(product), key,
                              productFileName(product, key.hex, Content::flatMap)};
-    const std::string place = (folder_ / entry.file).string();
-    const std::size_t most =
-        std::max({map.surface.vertices.size(), map.surface.triangles.size(), map.cameras.size()});
-    if (most > mostMeshElements) {
-        return fail(ErrorKind::unsupported,
-                    "the flat map has too many vertices, triangles or cameras to store", place);
-    }
-    if (const char* flaw = flawOf(map))
-        return fail(ErrorKind::badInput, std::string("the flat map has ") + flaw, place);
+    const std::filesystem::path file = folder_ / entry.file;
     ProductHeader header{Content::flatMap, {}, digestFromHex(key.hex), {}, attributes};
-    header.grid.size = {int(map.surface.vertices.size()), int(map.surface.triangles.size()),
-                        int(map.cameras.size())};
+    header.grid.size = TRY(elementNumbers(
+        Content::flatMap,
+        {map.surface.vertices.size(), map.surface.triangles.size(), map.cameras.size()}, file));
+    if (const char* flaw = flawOf(map))
+        return fail(ErrorKind::badInput, std::string("the flat map has ") + flaw, file.string());
     std::vector<Camera> cameras;
     cameras.reserve(map.cameras.size());
     for (const FlatCamera& camera : map.cameras) {

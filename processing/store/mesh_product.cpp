@@ -55,12 +55,9 @@ Result<void> Case::publishMesh(std::string_view product, const ProductKey& key, 
     TRY(checkWritable());
     const ProductEntry entry{std::string(product), key,
                              productFileName(product, key.hex, Content::mesh)};
-    if (mesh.vertices.size() > mostMeshElements || mesh.triangles.size() > mostMeshElements) {
-        return fail(ErrorKind::unsupported, "the mesh has too many vertices or triangles to store",
-                    (folder_ / entry.file).string());
-    }
     ProductHeader header{Content::mesh, {}, digestFromHex(key.hex), {}, attributes};
-    header.grid.size = {int(mesh.vertices.size()), int(mesh.triangles.size()), 1};
+    header.grid.size = TRY(elementNumbers(
+        Content::mesh, {mesh.vertices.size(), mesh.triangles.size(), 1}, folder_ / entry.file));
     return writeProduct(
                folder_, entry.file, header,
                {std::as_bytes(std::span(mesh.vertices)), std::as_bytes(std::span(mesh.triangles))})

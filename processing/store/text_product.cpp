@@ -19,9 +19,10 @@ Result<void> Case::publishText(std::string_view product, const ProductKey& key,
                                const std::vector<std::string>& outdated) {
     TRY(checkWritable());
     ProductHeader header{Content::text, {}, digestFromHex(key.hex), {}, attributes};
-    header.grid.size = {int(text.size()), 1, 1};
     const ProductEntry entry{std::string(product), key,
                              productFileName(product, key.hex, Content::text)};
+    header.grid.size =
+        TRY(elementNumbers(Content::text, {text.size(), 1, 1}, folder_ / entry.file));
     return writeProduct(folder_, entry.file, header, {std::as_bytes(std::span(text))})
         .and_then([&] { return announce(entry, outdated); });
 }

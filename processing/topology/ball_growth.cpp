@@ -10,6 +10,8 @@
 namespace haustra::topology {
 namespace {
 
+static_assert(maxGridSide < 1 << 16);
+
 // Priorities are whole ticks, finer than any two distances need be told apart.
 constexpr double ticksPerVoxel = 1024.0;
 constexpr int greatestPriority = 1 << 18;  // all that is 256 voxels deep is alike
@@ -17,13 +19,13 @@ constexpr int greatestPriority = 1 << 18;  // all that is 256 voxels deep is ali
 constexpr std::array<glm::ivec3, 6> faceSteps{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
-/// A voxel in one word: coordinates are below 2¹³ (checkGrid).
+/// A voxel in one word: coordinates are below 2¹⁵ (maxGridSide).
 class PackedVoxel {
 public:
     explicit PackedVoxel(glm::ivec3 v)
-        : bits_(std::uint64_t(v.x) | std::uint64_t(v.y) << 13 | std::uint64_t(v.z) << 26) {}
+        : bits_(std::uint64_t(v.x) | std::uint64_t(v.y) << 16 | std::uint64_t(v.z) << 32) {}
     glm::ivec3 voxel() const {
-        return {int(bits_ & 8191u), int(bits_ >> 13 & 8191u), int(bits_ >> 26)};
+        return {int(bits_ & 0xffffu), int(bits_ >> 16 & 0xffffu), int(bits_ >> 32)};
     }
 
 private:

@@ -1,10 +1,10 @@
 #include "topology/handle_cutting.h"
 
+#include "core/crop.h"
 #include "topology/ball_growth.h"
 #include "topology/lumen_pieces.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace haustra::topology {
 namespace {
@@ -12,13 +12,8 @@ namespace {
 // What an empty scanner measures.
 constexpr double emptyHu = -1000.0;
 
-/// A part of a grid.
-struct Box {
-    glm::ivec3 lowest{0}, size{0};
-};
-
 /// The voxels with a label other than 0, and `marginMm` more where the grid has them.
-Box boxAround(const BitMask& mask, const Grid& grid, double marginMm) {
+VoxelBox boxAround(const BitMask& mask, const Grid& grid, double marginMm) {
     glm::ivec3 lo = grid.size, hi(-1);
     for (int k = 0; k < grid.size.z; ++k) {
         for (int j = 0; j < grid.size.y; ++j) {
@@ -36,22 +31,6 @@ Box boxAround(const BitMask& mask, const Grid& grid, double marginMm) {
     lo = glm::max(lo - margin, glm::ivec3(0));
     hi = glm::min(hi + margin, grid.size - 1);
     return {lo, hi - lo + 1};
-}
-
-Volume<std::uint8_t> cropped(const Volume<std::uint8_t>& labels, const Box& box) {
-    Grid grid{box.size, labels.grid().patientFromVoxel};
-    grid.patientFromVoxel[3] =
-        glm::dvec4(labels.grid().patientFromVoxelPoint(glm::dvec3(box.lowest)), 1.0);
-    Volume<std::uint8_t> part(grid);
-    for (int k = 0; k < box.size.z; ++k) {
-        for (int j = 0; j < box.size.y; ++j) {
-            const glm::ivec3 from = box.lowest + glm::ivec3(0, j, k);
-            std::memcpy(part.writable().data() + grid.index(0, j, k),
-                        labels.voxels().data() + labels.grid().index(from),
-                        std::size_t(box.size.x));
-        }
-    }
-    return part;
 }
 
 BitMask bridgesOf(const Volume<std::uint8_t>& labels) {
@@ -72,20 +51,20 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
     };
     if (options.hu && !sameGrid(options.hu->grid(), grid))
         return fail(ErrorKind::badInput, "the scan is not on the labels' grid", "handle cutting");
-    Box box;
+    VoxelBox box;
     {
         const BitMask mask = maskOf(labels, options.threads);
         if (mask.count() == 0)
             return fail(ErrorKind::noResult, "the lumen is empty", "handle cutting");
         box = boxAround(mask, grid, options.bridgeRadiusMm);
     }
-    const Volume<std::uint8_t> part = cropped(labels, box);
+    const Volume<std::uint8_t> part = croppedCopy(labels, box, options.threads);
     const BitMask mask = maskOf(part, options.threads);
     const BitMask bridges = bridgesOf(part);
     JoinedLumen joined = joinPieces(mask, part.grid(),
                                     {.bridgeRadiusMm = options.bridgeRadiusMm,
                                      .sureWay = bridges.count() > 0 ? &bridges : nullptr,
-                                     .traces = {options.hu, box.lowest, emptyHu, options.wallHu},
+                                     .traces = {options.hu, box.lo, emptyHu, options.wallHu},
                                      .threads = options.threads});
     progress(0.3);
     BallGrowthOptions growth{options.priorityStep, options.priorityThreshold, {}};
@@ -101,7 +80,7 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
         for (int j = 0; j < box.size.y; ++j) {
             const std::uint8_t* before = part.voxels().data() + part.grid().index(0, j, k);
             std::uint8_t* after =
-                cut.labels.writable().data() + grid.index(box.lowest + glm::ivec3(0, j, k));
+                cut.labels.writable().data() + grid.index(box.lo + glm::ivec3(0, j, k));
             auto filling = std::uint8_t(LumenLabel::air);
             for (int i = 0; i < box.size.x; ++i) {
                 const glm::ivec3 v(i, j, k);

@@ -48,8 +48,9 @@ std::vector<BitMask> largePieces(const BitMask& mask, const Grid& grid, double s
             leftOutMl += volumeMl;
     }
     if (kept < bySize.size()) {
-        notes.push_back(printed("%.0f small pieces of the lumen left out, %.2f ml in all",
-                                double(bySize.size() - kept), leftOutMl));
+        notes.push_back(printed(
+            "%.0f pieces of the lumen left out, %s, %.2f ml in all", double(bySize.size() - kept),
+            kept == mostPieces ? "all but the largest" : "which are small", leftOutMl));
     }
     std::vector<BitMask> pieces(kept, BitMask(mask.size()));
     for (const MaskRun& run : all.runs) {

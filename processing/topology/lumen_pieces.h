@@ -23,7 +23,8 @@ struct JoinedLumen {
 };
 
 struct LumenJoinOptions {
-    double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest
+    double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest; so are
+                                   ///< all but the twelve largest
     double bridgeRadiusMm = 1.5;
     const BitMask* sureWay = nullptr;  ///< voxels in which no way is too narrow: see joinPieces
     StalkTraces traces = {};

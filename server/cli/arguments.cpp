@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 
 #include "cli/number_range.h"
+#include "core/patient_point.h"
 
 #include <charconv>
 #include <cmath>
@@ -27,6 +28,17 @@ std::optional<std::vector<double>> parseNumbers(const std::string& text, char se
     return numbers;
 }
 
+namespace {
+
+std::optional<glm::dvec3> parsePoint(const std::string& text) {
+    const auto numbers = parseNumbers(text, ',', 3);
+    if (!numbers) return std::nullopt;
+    const glm::dvec3 point((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return isPatientPoint(point) ? std::optional(point) : std::nullopt;
+}
+
+}  // namespace
+
 CLI::Option* addStoreOption(CLI::App& command, std::filesystem::path& store) {
     return command.add_option("--store", store, "The case store's folder")
         ->type_name("DIR")
@@ -48,9 +60,10 @@ CLI::Option* addPoints(CLI::App& command, const std::string& name, std::vector<g
     const auto take = [&points, name](const std::vector<std::string>& texts) {
         points.clear();
         for (const std::string& text : texts) {
-            const auto numbers = parseNumbers(text, ',', 3);
-            if (!numbers) throw CLI::ValidationError(name, "\"" + text + "\" is not x,y,z");
-            points.emplace_back((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+            const auto point = parsePoint(text);
+            if (!point)
+                throw CLI::ValidationError(name, "\"" + text + "\" is not x,y,z of a patient");
+            points.push_back(*point);
         }
     };
     return command.add_option_function<std::vector<std::string>>(name, take, description);
@@ -72,11 +85,12 @@ CLI::Option* addBallsOption(CLI::App& command, const std::string& name, std::vec
         for (const std::string& text : texts) {
             auto numbers = parseNumbers(text, ',', 4);
             if (!numbers) numbers = parseNumbers(text, ',', 3);
-            if (!numbers ||
-                (numbers->size() == 4 && !((*numbers)[3] > 0.0 && (*numbers)[3] <= 100.0)))
-                throw CLI::ValidationError(name, "\"" + text + "\" is not x,y,z or x,y,z,r");
-            CutBall ball{{(*numbers)[0], (*numbers)[1], (*numbers)[2]}};
-            if (numbers->size() == 4) ball.radiusMm = (*numbers)[3];
+            CutBall ball;
+            if (numbers) ball.centreMm = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+            if (numbers && numbers->size() == 4) ball.radiusMm = (*numbers)[3];
+            if (!numbers || !isPatientPoint(ball.centreMm) || !isCutRadius(ball.radiusMm))
+                throw CLI::ValidationError(
+                    name, "\"" + text + "\" is not x,y,z or x,y,z,r of a patient, r up to 100");
             balls.push_back(ball);
         }
     };
@@ -92,13 +106,12 @@ CLI::Option* addPairsOption(CLI::App& command, const std::string& name,
         pairs.clear();
         if (texts.size() % 2 != 0) throw CLI::ValidationError(name, "points come in pairs");
         for (std::size_t n = 0; n < texts.size(); n += 2) {
-            const auto a = parseNumbers(texts[n], ',', 3), b = parseNumbers(texts[n + 1], ',', 3);
+            const auto a = parsePoint(texts[n]), b = parsePoint(texts[n + 1]);
             if (!a || !b) {
-                throw CLI::ValidationError(
-                    name, "\"" + texts[n] + "\" and \"" + texts[n + 1] + "\" are not x,y,z x,y,z");
+                throw CLI::ValidationError(name, "\"" + texts[n] + "\" and \"" + texts[n + 1] +
+                                                     "\" are not x,y,z x,y,z of a patient");
             }
-            pairs.emplace_back(glm::dvec3((*a)[0], (*a)[1], (*a)[2]),
-                               glm::dvec3((*b)[0], (*b)[1], (*b)[2]));
+            pairs.emplace_back(*a, *b);
         }
     };
     return command.add_option_function<std::vector<std::string>>(name, take, description)

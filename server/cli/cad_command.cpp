@@ -80,8 +80,9 @@ Result<Truth> readTruth(const fs::path& truths, const std::string& name) {
                 (truths / name).string());
 }
 
-constexpr std::array<std::string_view, 6> parts{
-    "automatic-transfer", "pca", "cleansing", "texture", "shape", "past"};
+// What changes a case's evidence, and with it the candidates and how texture is learnt.
+constexpr std::array<std::string_view, 3> evidenceParts{"automatic-transfer", "pca", "cleansing"};
+constexpr std::array<std::string_view, 3> otherParts{"texture", "shape", "past"};
 constexpr std::string_view featurePart = "feature:";
 
 bool isWithout(const CadArguments& arguments, std::string_view part) {
@@ -90,7 +91,7 @@ bool isWithout(const CadArguments& arguments, std::string_view part) {
 }
 
 std::string checkPart(const std::string& part) {
-    if (std::find(parts.begin(), parts.end(), part) != parts.end()) return {};
+    if (std::ranges::count(evidenceParts, part) || std::ranges::count(otherParts, part)) return {};
     const bool named = part.starts_with(featurePart) && part.size() > featurePart.size();
     const std::string prefix = named ? part.substr(featurePart.size()) : "";
     if (named && std::any_of(cad::featureNames.begin(), cad::featureNames.end(),
@@ -99,10 +100,10 @@ std::string checkPart(const std::string& part) {
     return "detection has no part \"" + part + "\" to leave out";
 }
 
-// What of a case's evidence a variant changes: its candidates are others.
+// The parts of a case's evidence that are left out: its candidates are others.
 std::string variantOf(const CadArguments& arguments) {
     std::string variant;
-    for (const std::string_view part : {"automatic-transfer", "pca", "cleansing"})
+    for (const std::string_view part : evidenceParts)
         if (isWithout(arguments, part)) variant += std::string(part) + ' ';
     return variant;
 }
@@ -181,8 +182,8 @@ void checkArguments(const CadArguments& arguments) {
         (isWithout(arguments, "shape") || isWithout(arguments, "past")))
         throw CLI::ValidationError("--without",
                                    "without texture and shape there are no candidates");
-    // They change how texture is learnt, which that model has done already.
-    for (const char* part : {"pca", "automatic-transfer", "cleansing"})
+    // That model has learnt its texture already.
+    for (const std::string_view part : evidenceParts)
         if (!arguments.texture.empty() && isWithout(arguments, part))
             throw CLI::ValidationError(
                 "--texture", fmt::format("a model's texture cannot be taken without {}", part));

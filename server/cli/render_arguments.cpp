@@ -150,10 +150,10 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->default_str(toString(my.raycaster));
     command
         .add_option(
-            "--gpu-budget", my.gpuBudgetMb,
-            "GPU memory for the scan, MB; 0: what there is. Of --raycaster object-order and of "
+            "--gpu-budget", my.gpuBudgetMiB,
+            "GPU memory for the scan, MiB; 0: what there is. Of --raycaster object-order and of "
             "--labels: the others keep the whole scan there, or, native, nothing")
-        ->type_name("MB")
+        ->type_name("MIB")
         ->check(numberRange(0.0, 1e7))
         ->capture_default_str();
     auto* labels = command
@@ -371,7 +371,7 @@ void checkUsage(const RenderArguments& my) {
         wrong("--tf", "a slice shows grey values; give --window");
     if (!my.optics.empty() && !my.labels.empty())
         wrong("--tf", "a colour volume has colours of its own");
-    if (my.gpuBudgetMb > 0.0 && my.labels.empty() &&
+    if (my.gpuBudgetMiB > 0.0 && my.labels.empty() &&
         (!my.castsRays() || raycasterEntry(my.raycaster).volume != VolumeOnGpu::cells))
         wrong("--gpu-budget",
               "only the object-order raycaster has one; give --raycaster "

@@ -44,7 +44,7 @@ struct RenderArguments {
     std::filesystem::path paint;             ///< a picture's file, or "findings"
     std::optional<double> leastProbability;  ///< of candidates that are painted, too
     RaycasterKind raycaster = RaycasterKind::singlePass;
-    double gpuBudgetMb = 0.0;
+    double gpuBudgetMiB = 0.0;
     std::filesystem::path labels;      ///< of a colour volume's voxels
     std::vector<int> shownLabels;      ///< empty: all
     std::optional<double> stepVoxels;  ///< empty: the view's own

@@ -299,7 +299,7 @@ Result<Image> drawWith(const RenderArguments& arguments, render::PreparedCase pr
     auto context = TRY(gpu::Context::create());
     render::RendererOptions options;
     if (arguments.castsRays()) options.raycaster = arguments.raycaster;
-    options.gpuBudgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0));
+    options.gpuBudgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMiB * 1048576.0));
     options.threads = arguments.threads;
     auto renderer = TRY(render::CaseRenderer::upload(*context, std::move(prepared), options));
     return draw(*renderer);
@@ -409,7 +409,7 @@ Result<Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {
     auto context = TRY(gpu::Context::create());
     auto raycaster = TRY(render::LabelledRaycaster::create(
         *context, volume,
-        {.budgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMb * 1048576.0)),
+        {.budgetBytes = std::size_t(std::ceil(arguments.gpuBudgetMiB * 1048576.0)),
          .threads = arguments.threads}));
     TRY(raycaster->choose({arguments.shownLabels.begin(), arguments.shownLabels.end()}));
     render::CameraView view{freeCamera(arguments, volume->grid()), {}, marchOf(arguments)};

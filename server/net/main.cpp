@@ -31,7 +31,7 @@ struct Arguments {
     fs::path certificate, key, portFile, presets;
     std::string listen = toString(haustra::net::ListenAddress{}), logLevel = "info";
     std::string raycaster = automatic;
-    double gpuBudgetMb = 0.0;
+    double gpuBudgetMiB = 0.0;
 };
 
 int failed(const std::string& what) {
@@ -83,17 +83,17 @@ void addOptions(CLI::App& program, Arguments& arguments) {
         ->type_name("KIND")
         ->capture_default_str();
     program
-        .add_option("--gpu-budget", arguments.gpuBudgetMb,
+        .add_option("--gpu-budget", arguments.gpuBudgetMiB,
                     "GPU memory for all cases together, in MiB; one that does not fit makes those "
                     "that nobody reads any more go, then is drawn from cells that come and go "
                     "within what is left, or from main memory. 0: what the device has")
-        ->type_name("MB")
+        ->type_name("MIB")
         ->check(CLI::Range(0.0, 1048576.0))
         ->capture_default_str();
     program
         .add_option("--presets", arguments.presets,
                     "Transfer functions for clients beside the built-in ones: a folder of *.json "
-                    "files, as those in server/render/optics/presets")
+                    "files, as the client's optics panel saves them")
         ->type_name("DIR");
     program.add_option("--log-level", arguments.logLevel, "How much to log, on standard error")
         ->check(CLI::IsMember({"debug", "info", "warning", "error"}))
@@ -145,10 +145,10 @@ int runProgram(int argc, char** argv) {
             if (!kind) throw CLI::ValidationError("--raycaster", kind.error().message);
             arguments.server.drawing.raycaster = *kind;
         }
-        if (std::isnan(arguments.gpuBudgetMb))  // CLI::Range lets it through
+        if (std::isnan(arguments.gpuBudgetMiB))  // CLI::Range lets it through
             throw CLI::ValidationError("--gpu-budget", "nan is no number of MiB");
         arguments.server.drawing.gpuBudgetBytes =
-            std::size_t(std::ceil(arguments.gpuBudgetMb * double(1 << 20)));
+            std::size_t(std::ceil(arguments.gpuBudgetMiB * double(1 << 20)));
         if (!arguments.certificate.empty())
             arguments.server.identity = {arguments.certificate, arguments.key};
     } catch (const CLI::ParseError& error) {

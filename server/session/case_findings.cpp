@@ -12,18 +12,12 @@ namespace {
 
 namespace product = store::product;
 
-bool isPlace(glm::dvec3 mm) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(std::abs(mm[axis]) <= protocol::maxCoordinateMm)) return false;
-    return true;
-}
-
 // What can be told (PROTOCOL.md §4).
 bool isSound(const Finding& finding) {
     const auto isLength = [](double mm) { return mm >= 0.0 && mm <= protocol::maxCoordinateMm; };
-    return isPlace(finding.positionMm) && isPlace(finding.wallMm) &&
-           isPlace(finding.diameterEndsMm.first) && isPlace(finding.diameterEndsMm.second) &&
-           isLength(finding.diameterMm) &&
+    return isPatientPoint(finding.positionMm) && isPatientPoint(finding.wallMm) &&
+           isPatientPoint(finding.diameterEndsMm.first) &&
+           isPatientPoint(finding.diameterEndsMm.second) && isLength(finding.diameterMm) &&
            std::abs(finding.heightMm) <= protocol::maxCoordinateMm &&
            std::abs(finding.arcMm) <= protocol::maxCoordinateMm && finding.score >= 0.0 &&
            finding.score <= 1.0;

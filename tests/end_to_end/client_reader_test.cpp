@@ -166,7 +166,7 @@ TEST_F(ClientReader, TilesAreDecodedWhileTheReaderDoesOtherThings) {
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         const auto before = Clock::now();
         session.poll(std::chrono::milliseconds(0));
-        for (const Arrival& arrival : session.takePictures())
+        for (const link::PictureDone& arrival : session.takePictures())
             decodedBefore |= arrival.decodedAt < before;
     }
     EXPECT_TRUE(decodedBefore);
@@ -346,6 +346,23 @@ TEST_F(ClientReader, BookmarksLeadAlongTheColon) {
     }
     reader_->goTo(reader_->nextBookmark(-1).value());
     EXPECT_NEAR(flight.arcMm(), 250.0, 1e-9);
+}
+
+TEST_F(ClientReader, ABookmarkOfFreeFlightLiesWhereTheCameraHasGone) {
+    ASSERT_TRUE(runUntil([&] { return allAtRest(); }));
+    Flight& flight = reader_->flight();
+    flight.goTo(400.0);
+    reader_->addBookmark("on the centerline");
+    flight.goTo(100.0);
+    flight.moveFreely({0.0, 0.0, 150.0});
+    ASSERT_TRUE(flight.isFree());
+    const double arc = flight.placeArcMm();
+    ASSERT_GT(std::abs(arc - 100.0), 50.0);
+    EXPECT_NEAR(reader_->nextBookmark(+1).value().arcMm, 400.0, 1e-9);
+    reader_->addBookmark("off it");
+    ASSERT_TRUE(runUntil([&] { return reader_->session().owedBookmarks() == 0; }));
+    EXPECT_NEAR(reader_->session().bookmarks().back().arcMm, arc, 1e-9);
+    EXPECT_FALSE(reader_->nextBookmark(-1)) << "it is here";
 }
 
 TEST_F(ClientReaderWithALossyLink, ALostLinkComesBackWithViewsFlightAndBookmarks) {

@@ -407,7 +407,7 @@ TEST(LedgerKill, WhatWasToldToBeKeptSurvives) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(700);
         while (std::chrono::steady_clock::now() < end) {
             session.poll(std::chrono::milliseconds(20));
-            for (const reader::Arrival& arrival : session.takePictures())
+            for (const link::PictureDone& arrival : session.takePictures())
                 session.onScreen(arrival.picture);
             if (session.seenShare()) shareBefore = std::max(shareBefore, *session.seenShare());
         }

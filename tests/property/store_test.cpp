@@ -177,6 +177,18 @@ TEST_F(Store, ATextComesBackBitForBit) {
     }
 }
 
+// Whoever reads refuses them: the case would have lost what it had.
+TEST_F(Store, WhatIsTooLargeToBeReadAgainIsNotWritten) {
+    Case writing = writer();
+    ASSERT_TRUE(writing.publishText("quality", keyOf(1), "sound"));
+    const auto refused = writing.publishText("quality", keyOf(2), std::string((1 << 24) + 1, 'x'));
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, ErrorKind::unsupported);
+    EXPECT_TRUE(writing.publishText("findings", keyOf(2), std::string(1 << 24, 'x')));
+    EXPECT_TRUE(writing.readText("findings"));
+    EXPECT_EQ(writing.readText("quality").value_or(""), "sound");
+}
+
 TEST_F(Store, AMeshComesBackBitForBit) {
     Case writing = writer();
     for (const glm::ivec2 size :

@@ -93,6 +93,15 @@ TEST_F(KnownServersTest, PinsOnFirstUseAcceptsTheSameAndRefusesAnother) {
     EXPECT_EQ(*checkPin(pinning, "a:1", one), Trust::known);  // a refusal changes nothing
 }
 
+// Whoever took that for a first meeting would trust anybody, and write over the other pins.
+TEST_F(KnownServersTest, AFileThatCannotBeLookedForIsNoFirstMeeting) {
+    std::filesystem::create_symlink(file(), file());  // leads nowhere, but is there
+    const auto trust = checkPin({file(), {}}, "a:1", one);
+    ASSERT_FALSE(trust);
+    EXPECT_EQ(trust.error().kind, ErrorKind::io);
+    EXPECT_TRUE(std::filesystem::is_symlink(file()));
+}
+
 TEST_F(KnownServersTest, AGivenFingerprintMustMatchAndReplacesThePin) {
     ASSERT_TRUE(checkPin({file(), {}}, "a:1", one));
     EXPECT_FALSE(checkPin({file(), two}, "a:1", one));

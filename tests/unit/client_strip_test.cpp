@@ -148,8 +148,14 @@ protocol::CaseOpened soundCase() {
     trust->set_confidence(0.9);
     trust->set_length_mm(1500.0);
     trust->add_warnings("the sigmoid is collapsed over 31 mm, at (1, 2, 3) mm");
-    for (int n = 0; n < colonSegments; ++n)
-        trust->add_segments()->set_length_mm(250.0);
+    for (int n = 0; n < colonSegments; ++n) {
+        auto* segment = trust->add_segments();
+        segment->set_length_mm(250.0 + n);
+        segment->set_diameter_mm(40.0 + n);
+        segment->set_gas_ml(300.0 + n);
+        segment->set_tagged_ml(20.0 + n);
+        segment->set_collapsed_mm(1.0 + n);
+    }
     return opened;
 }
 
@@ -158,7 +164,13 @@ TEST(ClientCase, OnlySoundTrustIsTakenFromAServer) {
     ASSERT_TRUE(info && info->trust);
     EXPECT_EQ(info->trust->confidence, 0.9);
     EXPECT_EQ(info->trust->warnings.size(), 1u);
-    EXPECT_EQ(info->trust->segments[5].lengthMm, 250.0);
+    const SegmentDistension& cecum = info->trust->segments[5];
+    EXPECT_EQ(cecum.lengthMm, 255.0);
+    EXPECT_EQ(cecum.diameterMm, 45.0);
+    EXPECT_EQ(cecum.gasMl, 305.0);
+    EXPECT_EQ(cecum.taggedMl, 25.0);
+    EXPECT_EQ(cecum.untaggedMl, 0.0);
+    EXPECT_EQ(cecum.collapsedMm, 6.0);
     const auto refused = [](const auto& spoil) {
         protocol::CaseOpened opened = soundCase();
         spoil(*opened.mutable_trust());

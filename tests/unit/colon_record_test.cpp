@@ -20,7 +20,7 @@ ColonRecord collapsedColon() {
                         {JunctionKind::collapse, {60, 10, -150}, 31, 0, 0.9},
                         {JunctionKind::openLumen, {0, 10, -50}, 0, 9, 1.0}};
     record.confidence = 0.875;
-    record.leftOut = {{{-40, 0, -220}, 28.0, true, ColonPart::cecum, 4.0, true}};
+    record.leftOut = {{{-40, 0, -220}, 28.0, BodyContent::gas, ColonPart::cecum, 4.0, true}};
     record.warnings = {"the sigmoid is collapsed over 31 mm, at (60, 10, -150) mm"};
     return record;
 }
@@ -49,10 +49,19 @@ TEST(ColonRecord, ItsJsonSaysAllOfIt) {
     EXPECT_EQ(json.at("warnings").size(), 1u);
     EXPECT_TRUE(json.at("tagging_hu").is_null());
     EXPECT_EQ(json.at("left_out")[0].at("like_colon"), false);
+    EXPECT_TRUE(json.at("ends_at").is_null());
     ColonRecord record = collapsedColon();
     record.taggingHu = 312.5, record.leftOut[0].likeColon = true;
+    record.endsAt = {1.0 / 3.0, -2.0, 0.125};
+    record.leftOut.push_back({{}, 3.5, BodyContent::tagged});
+    record.leftOut.push_back({{}, 7.25, BodyContent::untagged});
     const auto other = nlohmann::json::parse(qualityJson(record));
     EXPECT_EQ(other.at("tagging_hu"), 312.5);
+    EXPECT_EQ(other.at("ends_at"), nlohmann::json({0.33, -2.0, 0.13}));
+    EXPECT_EQ(other.at("left_out_gas_ml"), 28.0);
+    EXPECT_EQ(other.at("left_out_tagged_ml"), 3.5);
+    EXPECT_EQ(other.at("left_out_untagged_ml"), 7.25);
+    EXPECT_EQ(other.at("left_out")[2].at("content"), "untagged");
     EXPECT_EQ(other.at("left_out")[0].at("like_colon"), true);
 }
 
@@ -85,7 +94,12 @@ TEST(ColonEdits, WhatIsNoneIsRefused) {
     for (const char* text :
          {"", "{}", "[1,2]",
           "{\"seeds_mm\":[[1,2]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}",
-          "{\"seeds_mm\":[[1,2,\"x\"]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}"}) {
+          "{\"seeds_mm\":[[1,2,\"x\"]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}",
+          "{\"seeds_mm\":[[1,2,1e300]],\"excludes_mm\":[],\"cuts\":[],\"joins_mm\":[]}",
+          "{\"seeds_mm\":[],\"excludes_mm\":[],\"cuts\":[{\"center_mm\":[1,2,3],"
+          "\"radius_mm\":1e300}],\"joins_mm\":[]}",
+          "{\"seeds_mm\":[],\"excludes_mm\":[],\"cuts\":[{\"center_mm\":[1,2,3],"
+          "\"radius_mm\":-1}],\"joins_mm\":[]}"}) {
         const auto edits = editsFromJson(text);
         ASSERT_FALSE(edits) << text;
         EXPECT_EQ(edits.error().kind, ErrorKind::badInput);

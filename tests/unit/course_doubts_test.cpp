@@ -66,8 +66,11 @@ TEST(CourseDoubts, ACourseThatEndsWhereNoCecumLiesIsDoubted) {
 
 TEST(CourseDoubts, WhatIsLikeColonAndWasLeftOutIsDoubtedMoreThanOtherGas) {
     const auto body = [](bool gas, double ml, bool likeColon) {
-        return LeftOutBody{glm::dvec3(0.0), ml,    gas,      ColonPart::sigmoid, 12.0,
-                           false,           false, likeColon};
+        return LeftOutBody{.volumeMl = ml,
+                           .content = gas ? BodyContent::gas : BodyContent::tagged,
+                           .nearest = ColonPart::sigmoid,
+                           .distanceMm = 12.0,
+                           .likeColon = likeColon};
     };
     const auto leavingOut = [](std::vector<LeftOutBody> bodies) {
         ColonRecord record = wholeColon();
@@ -123,7 +126,7 @@ TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.pieces.resize(5), r.junctions.resize(4); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.junctions[4].kind = JunctionKind::thinWall; }));
     EXPECT_TRUE(lowers([](ColonRecord& r) {
-        r.leftOut.push_back({{}, 30.0, true, {}, 3.0, true});
+        r.leftOut.push_back({{}, 30.0, BodyContent::gas, {}, 3.0, true});
     }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, true}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.untaggedPools.push_back({{}, {}, 900.0, 10.0}); }));
@@ -132,7 +135,7 @@ TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.chainConfidence = 0.8; }));
     // What is no news of the course.
     EXPECT_FALSE(lowers([](ColonRecord& r) {
-        r.leftOut.push_back({{}, 3.0, true, {}, 3.0, false});
+        r.leftOut.push_back({{}, 3.0, BodyContent::gas, {}, 3.0, false});
     }));
     EXPECT_FALSE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, false}); }));
     EXPECT_FALSE(lowers([](ColonRecord& r) { r.maskInSoftTissue = 0.03; }));

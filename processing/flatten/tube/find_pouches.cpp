@@ -20,12 +20,6 @@ constexpr std::size_t largeSpot = 1000;
 /// lattice for each.
 constexpr double leastRadius = 0x1p-9, radiusStep = 1.1892071150027210667;
 
-double areaMm2(const TriMesh& tube, const glm::ivec3& t) {
-    const glm::dvec3 a = tube.vertices[std::size_t(t.x)];
-    return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(t.y)] - a,
-                                        tube.vertices[std::size_t(t.z)] - a));
-}
-
 /// Spots that are nearer to each other than two of the least circles become one.
 std::vector<Spot> merged(const TriMesh& tube, const PeriodicMap& map, std::vector<Spot> spots) {
     for (bool again = true; again;) {
@@ -78,7 +72,7 @@ std::vector<double> neckFirst(const TriMesh& tube, const PeriodicMap& map, glm::
         for (std::size_t r = 0; r < radii.size(); ++r) {
             if (least >= radii[r]) continue;
             if (most < radii[r]) {
-                within[r] += areaMm2(tube, t);
+                within[r] += triangleAreaMm2(tube, t);
                 continue;
             }
             glm::dvec3 ends[2];

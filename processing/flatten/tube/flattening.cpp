@@ -61,11 +61,7 @@ struct Mapped {
         source = std::move(made.sourceTriangle);
         apart = std::move(now);
     }
-    double areaMm2(std::size_t t) const {
-        const glm::dvec3 a = tube.vertices[std::size_t(tube.triangles[t].x)];
-        return 0.5 * glm::length(glm::cross(tube.vertices[std::size_t(tube.triangles[t].y)] - a,
-                                            tube.vertices[std::size_t(tube.triangles[t].z)] - a));
-    }
+    double areaMm2(std::size_t t) const { return triangleAreaMm2(tube, tube.triangles[t]); }
     Distortion measured(bool outside = false) const {
         if (!outside) {
             return measureDistortion(

@@ -17,10 +17,6 @@ namespace {
 
 enum class Side : char { outside, inside, rim };
 
-double areaMm2(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
-    return 0.5 * glm::length(glm::cross(b - a, c - a));
-}
-
 double leastAngle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const std::array<glm::dvec3, 3> p{a, b, c};
     double least = std::numbers::pi;
@@ -222,9 +218,9 @@ private:
         double least = std::numbers::pi, before = 0.0, after = 0.0;
         for (const int t : made_.replaced) {
             const glm::ivec3 c = closed_.triangles[std::size_t(t)];
-            before +=
-                areaMm2(closed_.vertices[std::size_t(c.x)], closed_.vertices[std::size_t(c.y)],
-                        closed_.vertices[std::size_t(c.z)]);
+            before += triangleAreaMm2(closed_.vertices[std::size_t(c.x)],
+                                      closed_.vertices[std::size_t(c.y)],
+                                      closed_.vertices[std::size_t(c.z)]);
         }
         for (std::size_t t = 0; t < made_.triangles.size(); ++t) {
             const glm::ivec3 c = made_.triangles[t],
@@ -234,7 +230,7 @@ private:
             const glm::dvec3 normal = glm::cross(closed_.vertices[std::size_t(old.y)] - o,
                                                  closed_.vertices[std::size_t(old.z)] - o);
             if (!(glm::dot(glm::cross(q - p, r - p), normal) > 0.0)) return false;
-            after += areaMm2(p, q, r);
+            after += triangleAreaMm2(p, q, r);
             if (isRim(c.x) || isRim(c.y) || isRim(c.z))
                 least = std::min(least, leastAngle(p, q, r));
         }

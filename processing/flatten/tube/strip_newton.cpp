@@ -1,5 +1,7 @@
 #include "flatten/tube/strip_newton.h"
 
+#include "core/quantile.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,13 +15,12 @@ namespace {
 /// Per vertex a rank, the larger the larger its triangles are in the plane for their area.
 std::vector<int> sizeRanks(const TriMesh& tube, const std::vector<double>& stretch) {
     std::vector<double> sorted = stretch;
-    const auto middle = sorted.begin() + long(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    const double middle = medianOf(sorted);
     constexpr int most = 100;
     std::vector<int> ranks(tube.vertices.size(), most);
     for (std::size_t t = 0; t < stretch.size(); ++t) {
         // Three decades in area a rank leave their sum half of a double's digits and more.
-        const int rank = most - int(std::clamp(std::log10(*middle / stretch[t]) / 3.0, 0.0, 90.0));
+        const int rank = most - int(std::clamp(std::log10(middle / stretch[t]) / 3.0, 0.0, 90.0));
         for (int c = 0; c < 3; ++c) {
             int& of = ranks[std::size_t(tube.triangles[t][c])];
             of = std::min(of, rank);

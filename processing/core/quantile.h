@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace haustra::cad {
+namespace haustra {
 
 /// Beneath or at which `share` of them lie, 0…1: the smallest of 0, the greatest of 1. Reorders
 /// them. Of one at least. O(n).
@@ -17,10 +17,11 @@ T quantileOf(std::vector<T>& values, double share) {
 
 /// The upper one of the two middle ones where they are even in number; reorders them. Of one at
 /// least. O(n).
-inline double medianOf(std::vector<double>& values) {
+template <class T>
+T medianOf(std::vector<T>& values) {
     const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
 }
 
-}  // namespace haustra::cad
+}  // namespace haustra
