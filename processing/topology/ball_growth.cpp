@@ -92,13 +92,12 @@ private:
 
 class BallGrowth {
 public:
-    BallGrowth(const BitMask& domain, const Volume<float>& distanceMm,
-               const BallGrowthOptions& options)
+    BallGrowth(const BitMask& domain, const Volume<float>& distanceMm, const Progress& progress)
         : domain_(domain),
           distanceMm_(distanceMm),
-          progress_(options.progress),
-          step_(std::max(1, int(std::lround(options.priorityStep * ticksPerVoxel)))),
-          threshold_(int(std::lround(options.priorityThreshold * ticksPerVoxel))),
+          progress_(progress),
+          step_(std::max(1, int(std::lround(priorityStep * ticksPerVoxel)))),
+          threshold_(int(std::lround(priorityThreshold * ticksPerVoxel))),
           untouched_(domain),
           ball_(domain.size()) {
         const glm::dvec3 spacing = distanceMm.grid().spacingMm();
@@ -179,8 +178,8 @@ private:
 }  // namespace
 
 BitMask growBall(const BitMask& domain, const Volume<float>& distanceMm,
-                 const std::vector<glm::ivec3>& path, const BallGrowthOptions& options) {
-    return BallGrowth(domain, distanceMm, options).grow(path);
+                 const std::vector<glm::ivec3>& path, const Progress& progress) {
+    return BallGrowth(domain, distanceMm, progress).grow(path);
 }
 
 }  // namespace haustra::topology

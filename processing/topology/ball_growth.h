@@ -10,11 +10,8 @@
 
 namespace haustra::topology {
 
-struct BallGrowthOptions {
-    double priorityStep = 0.1;       ///< δ
-    double priorityThreshold = 0.8;  ///< T_th
-    Progress progress;
-};
+inline constexpr double priorityStep = 0.1;       ///< δ: what a voxel that is not simple falls by
+inline constexpr double priorityThreshold = 0.8;  ///< T_th: below it the voxel is left out
 
 /// A subset of `domain` with the topology of a ball under the (6, 18) pair, by construction: it
 /// begins with one voxel and every other is added as a simple point.
@@ -31,6 +28,6 @@ struct BallGrowthOptions {
 /// distanceToBoundaryMm(domain), or more where no handle is to be cut. Linear in the domain's
 /// voxels but for those tried again; one thread.
 BitMask growBall(const BitMask& domain, const Volume<float>& distanceMm,
-                 const std::vector<glm::ivec3>& path, const BallGrowthOptions& options = {});
+                 const std::vector<glm::ivec3>& path, const Progress& progress = {});
 
 }  // namespace haustra::topology

@@ -56,20 +56,18 @@ Result<CutLumen> cutHandles(const Volume<std::uint8_t>& labels,
         const BitMask mask = maskOf(labels, options.threads);
         if (mask.count() == 0)
             return fail(ErrorKind::noResult, "the lumen is empty", "handle cutting");
-        box = boxAround(mask, grid, options.bridgeRadiusMm);
+        box = boxAround(mask, grid, bridgeRadiusMm);
     }
     const Volume<std::uint8_t> part = croppedCopy(labels, box, options.threads);
     const BitMask mask = maskOf(part, options.threads);
     const BitMask bridges = bridgesOf(part);
     JoinedLumen joined = joinPieces(mask, part.grid(),
-                                    {.bridgeRadiusMm = options.bridgeRadiusMm,
-                                     .sureWay = bridges.count() > 0 ? &bridges : nullptr,
+                                    {.sureWay = bridges.count() > 0 ? &bridges : nullptr,
                                      .traces = {options.hu, box.lo, emptyHu, options.wallHu},
                                      .threads = options.threads});
     progress(0.3);
-    BallGrowthOptions growth{options.priorityStep, options.priorityThreshold, {}};
-    if (options.progress) growth.progress = [&](double done) { progress(0.3 + 0.65 * done); };
-    const BitMask ball = growBall(joined.domain, joined.distanceMm, joined.path, growth);
+    const BitMask ball = growBall(joined.domain, joined.distanceMm, joined.path,
+                                  [&](double done) { progress(0.3 + 0.65 * done); });
 
     CutLumen cut;
     cut.handlesCut = digitalTopology(joined.domain, options.threads).handles();

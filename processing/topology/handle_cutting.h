@@ -12,9 +12,6 @@
 namespace haustra::topology {
 
 struct HandleCuttingOptions {
-    double priorityStep = 0.1;       ///< δ: what a non-simple voxel's priority falls by
-    double priorityThreshold = 0.8;  ///< T_th: below it the voxel is left out
-    double bridgeRadiusMm = 1.5;     ///< of the tube that joins segments across a collapse
     /// The scan that the labels were found in, on their grid; null: none. Islands are tied where it
     /// shows a trace of a stalk; all of a wall is at `wallHu`.
     const Volume<std::int16_t>* hu = nullptr;

@@ -269,7 +269,7 @@ JoinedLumen joinPieces(const BitMask& mask, const Grid& grid, const LumenJoinOpt
         joined.domain.add(pieces[n]);
         if (!joined.path.empty()) {
             const glm::ivec3 from = joined.path.back(), to = paths[n].front();
-            layBridge(joined.bridges, joined.path, from, to, grid, options.bridgeRadiusMm);
+            layBridge(joined.bridges, joined.path, from, to, grid, bridgeRadiusMm);
             const glm::dvec3 at = grid.patientFromVoxelPoint(0.5 * glm::dvec3(from + to));
             joined.notes.push_back(
                 printed("a bridge of %.0f mm joins two pieces at (%.0f, %.0f, %.0f) mm",

@@ -22,10 +22,12 @@ struct JoinedLumen {
     std::vector<std::string> notes;
 };
 
+/// Of the tubes that join pieces.
+inline constexpr double bridgeRadiusMm = 1.5;
+
 struct LumenJoinOptions {
-    double smallestPieceMl = 2.0;  ///< smaller pieces are left out, but for the largest; so are
-                                   ///< all but the twelve largest
-    double bridgeRadiusMm = 1.5;
+    double smallestPieceMl = 2.0;      ///< smaller pieces are left out, but for the largest; so are
+                                       ///< all but the twelve largest
     const BitMask* sureWay = nullptr;  ///< voxels in which no way is too narrow: see joinPieces
     StalkTraces traces = {};
     int threads = 0;
