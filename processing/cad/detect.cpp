@@ -8,6 +8,7 @@
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
+#include "core/segments_along.h"
 #include "core/version.h"
 
 #include <algorithm>
@@ -36,19 +37,9 @@ const char* kindOf(const Lesion& lesion, double heightMm) {
     return heightMm < flatHeightMm && ratio < flatRatio ? "flat" : "sessile";
 }
 
-/// Of the piece whose ball is nearest.
-std::optional<ColonSegment> segmentAt(const PreparedColon& colon, glm::dvec3 placeMm) {
-    std::optional<ColonSegment> segment;
-    double least = std::numeric_limits<double>::infinity();
-    for (const ColonPiece& piece : colon.pieces) {
-        const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
-        if (mm < least) least = mm, segment = segmentOf(piece.part);
-    }
-    return segment;
-}
-
-Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
-                  const Candidate& candidate, SampleNumbers& numbers) {
+Finding findingOf(const PreparedColon& colon, const std::vector<SegmentStart>& segments,
+                  const WallEvidence& evidence, const Candidate& candidate,
+                  SampleNumbers& numbers) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
     finding.positionMm = lesion.centreMm;
@@ -61,7 +52,7 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
     finding.kind = kindOf(lesion, finding.heightMm);
     const WallPlace along = evidence.alongColon->at(lesion.topMm);
     finding.arcMm = along.arcMm;
-    finding.segment = segmentAt(colon, along.cameraMm);
+    finding.segment = segmentAt(segments, along.arcMm);
     for (std::size_t n = 0; n < featureNames.size(); ++n)
         finding.features.emplace_back(std::string(featureNames[n]), candidate.features[n]);
     finding.voxels = segmentationOf(colon, evidence, lesion);
@@ -71,12 +62,13 @@ Finding findingOf(const PreparedColon& colon, const WallEvidence& evidence,
 // Each as a finding, in their order.
 std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& evidence,
                               std::span<const Candidate* const> candidates, int threads) {
+    const auto segments = segmentsAlong(colon.centerline, colon.pieces);
     std::vector<Finding> findings(candidates.size());
     parallelForEach(
         candidates.size(), threads,
         [&] { return SampleNumbers(evidence.samples.mesh.vertices.size()); },
         [&](std::size_t n, SampleNumbers& numbers) {
-            findings[n] = findingOf(colon, evidence, *candidates[n], numbers);
+            findings[n] = findingOf(colon, segments, evidence, *candidates[n], numbers);
         });
     return findings;
 }
@@ -379,6 +371,13 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
     for (auto* list : {&findings.findings, &findings.candidates})
         std::stable_sort(list->begin(), list->end(),
                          [](const Finding& a, const Finding& b) { return a.arcMm < b.arcMm; });
+    // Few colons have as many polyps, and none that detection has learnt from.
+    constexpr std::size_t crowd = 25;
+    if (findings.findings.size() >= crowd)
+        findings.warnings.push_back(
+            printed("%.0f places are told, more than a colon commonly has polyps: lumps of residue "
+                    "without tagging look alike, and most may be such",
+                    double(findings.findings.size())));
     warnOfMasses(findings);
     warnOfResidue(residue, model, *evidence.alongColon, findings);
     return findings;

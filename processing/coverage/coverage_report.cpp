@@ -107,24 +107,43 @@ Share shareOf(const CoverageWall& wall, const std::vector<Visibility>& seen) {
     return share;
 }
 
-std::vector<ColonSegment> segmentsOf(const CoverageWall& wall,
-                                     const std::vector<ColonPiece>& pieces, int threads) {
-    if (pieces.empty()) return {};
-    std::vector<ColonSegment> segments(wall.mesh.triangles.size());
-    parallelFor(segments.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+std::vector<double> arcsOf(const CoverageWall& wall,
+                           const std::vector<std::int32_t>& sourceTriangle, const FlatMap* map,
+                           int threads) {
+    constexpr double unknown = -1.0;
+    std::vector<double> ofSource;
+    for (std::size_t t = 0; map && t < map->sourceTriangle.size(); ++t) {
+        const auto source = std::size_t(map->sourceTriangle[t]);
+        if (source >= ofSource.size()) ofSource.resize(source + 1, unknown);
+        const glm::ivec3 corners = map->surface.triangles[t];
+        const auto arcAt = [&](int corner) {
+            return map->cameras[std::size_t(map->camera[std::size_t(corner)])].arcMm;
+        };
+        ofSource[source] = (arcAt(corners.x) + arcAt(corners.y) + arcAt(corners.z)) / 3.0;
+    }
+    std::vector<double> arcsMm(wall.mesh.triangles.size());
+    parallelFor(arcsMm.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) {
-            const glm::ivec3 t = wall.mesh.triangles[n];
-            const glm::dvec3 middle =
-                (wall.mesh.vertices[std::size_t(t.x)] + wall.mesh.vertices[std::size_t(t.y)] +
-                 wall.mesh.vertices[std::size_t(t.z)]) /
-                3.0;
-            double least = std::numeric_limits<double>::infinity();
-            for (const ColonPiece& piece : pieces) {
-                const double mm = glm::distance(piece.centreMm, middle) - piece.radiusMm;
-                if (mm < least) least = mm, segments[n] = segmentOf(piece.part);
+            const auto source = std::size_t(sourceTriangle[n]);
+            if (source < ofSource.size() && ofSource[source] != unknown) {
+                arcsMm[n] = ofSource[source];
+                continue;
             }
+            const glm::ivec3 t = wall.mesh.triangles[n];
+            arcsMm[n] = nearestArc(wall.centerline, (wall.mesh.vertices[std::size_t(t.x)] +
+                                                     wall.mesh.vertices[std::size_t(t.y)] +
+                                                     wall.mesh.vertices[std::size_t(t.z)]) /
+                                                        3.0);
         }
     });
+    return arcsMm;
+}
+
+std::vector<ColonSegment> segmentsOf(const std::vector<double>& arcsMm,
+                                     const std::vector<SegmentStart>& starts) {
+    std::vector<ColonSegment> segments;
+    for (const double arcMm : arcsMm)
+        if (const auto segment = segmentAt(starts, arcMm)) segments.push_back(*segment);
     return segments;
 }
 

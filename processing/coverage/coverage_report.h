@@ -2,11 +2,14 @@
 #pragma once
 
 #include "core/colon_record.h"
+#include "core/flat_map.h"
 #include "core/result.h"
+#include "core/segments_along.h"
 #include "core/wall_visibility.h"
 #include "coverage/missed_review.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,10 +27,16 @@ struct Share {
 };
 Share shareOf(const CoverageWall& wall, const std::vector<Visibility>& seen);
 
-/// Of each triangle the segment whose piece is nearest (its centre's distance less its radius), as
-/// findings have it; empty without pieces. O(triangles · pieces).
-std::vector<ColonSegment> segmentsOf(const CoverageWall& wall,
-                                     const std::vector<ColonPiece>& pieces, int threads = 0);
+/// Of each triangle its place along the centerline, mm from the rectum: where the flat map has its
+/// source (`sourceTriangle`, of each triangle), as findings have it; where that lacks it, or there
+/// is none, of the nearest sample, which may be another loop's. The centerline has a sample.
+std::vector<double> arcsOf(const CoverageWall& wall,
+                           const std::vector<std::int32_t>& sourceTriangle, const FlatMap* map,
+                           int threads = 0);
+
+/// The segment of each arc; empty without starts.
+std::vector<ColonSegment> segmentsOf(const std::vector<double>& arcsMm,
+                                     const std::vector<SegmentStart>& starts);
 std::array<Share, colonSegments> sharesBySegment(const CoverageWall& wall,
                                                  const std::vector<Visibility>& seen,
                                                  const std::vector<ColonSegment>& segments);

@@ -27,17 +27,17 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     const auto doubt = [&](double probability, std::string about) {
         if (probability > 0.0) doubts.push_back({std::move(about), probability});
     };
-    std::array<double, colonParts> lengthMm{};
+    std::array<double, colonParts> tubeMm{};
     for (const ColonPiece& piece : record.pieces)
-        lengthMm[std::size_t(piece.part)] += piece.lengthMm;
+        tubeMm[std::size_t(piece.part)] += piece.tubeMm;
     for (std::size_t n = 0; n < record.junctions.size(); ++n) {
         const ColonJunction& junction = record.junctions[n];
         const ColonPiece &a = record.pieces[n], &b = record.pieces[n + 1];
         if (junction.kind == JunctionKind::collapse) {
-            lengthMm[std::size_t(a.part)] += junction.lengthMm;
+            tubeMm[std::size_t(a.part)] += junction.lengthMm;
             doubt(
                 wrongCollapse(junction.lengthMm, a.radiusMm / b.radiusMm),
-                junction.lengthMm > 0.0 && junction.lengthMm < twoWallsMm
+                junction.lengthMm < twoWallsMm
                     ? printed("two loops may only touch where %.0f mm were crossed from the %s on",
                               junction.lengthMm, toString(a.part))
                     : printed("a loop may lie in the %.0f mm that were crossed from the %s on",
@@ -52,7 +52,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
                                                                    {ColonPart::transverse, 150.0},
                                                                    {ColonPart::ascending, 60.0}}};
     for (const auto& [part, least] : leastMm) {
-        const double mm = lengthMm[std::size_t(part)];
+        const double mm = tubeMm[std::size_t(part)];
         if (mm < least)
             doubt(0.4 * (1.0 - mm / least),
                   printed("no more than %.0f mm of %s%s were found", mm, toString(part),
@@ -93,8 +93,20 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
               printed("%.0f ml of gas near the %s may be colon", body.volumeMl,
                       toString(body.nearest)));
     }
+    for (const LeftOutBody& body : record.leftOut) {
+        constexpr double tellMl = 5.0, muchMl = 100.0;
+        if (body.content == BodyContent::gas || !body.opens || body.volumeMl < tellMl) continue;
+        doubt(0.3 * std::min(1.0, body.volumeMl / muchMl),
+              printed("%.0f ml of fluid that lie open to the %s may be colon", body.volumeMl,
+                      toString(body.nearest)));
+    }
     for (const RebuiltWallRecord& wall : record.walls) {
         constexpr double tellMm2 = 20.0;
+        constexpr double flatLoopMm2 = 3000.0;  // a loop of 40 mm pressed flat along 75
+        if (!wall.betweenLoops && wall.areaMm2 > flatLoopMm2)
+            doubt(0.4,
+                  printed("a wall of %.0f mm2 that was set up is wider than bowel that touches",
+                          wall.areaMm2));
         if (wall.betweenLoops && wall.areaMm2 > tellMm2)
             doubt(0.02, printed("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
     }

@@ -61,7 +61,8 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     }
     if (piece < 0) {
         return fail(ErrorKind::badInput,
-                    "there is no air or fluid of a lumen within 3 mm of this point",
+                    "there is no air or fluid of a lumen within 3 mm of this point, or its gas is "
+                    "open to the air around the patient",
                     printed("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
     }
     return piece;

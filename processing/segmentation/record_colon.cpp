@@ -89,8 +89,8 @@ public:
             const double gasMl = double(piece.gasVoxels) * voxelMl,
                          untaggedMl = double(piece.untaggedVoxels) * voxelMl;
             made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
-                                    node.lengthMm, gasMl, piece.volumeMl - gasMl - untaggedMl,
-                                    untaggedMl});
+                                    wayThrough(n), gasMl, piece.volumeMl - gasMl - untaggedMl,
+                                    untaggedMl, node.lengthMm});
         }
         addSacsFluid();
         for (std::size_t n = 0; n < chain_.junctions.size(); ++n) {
@@ -124,6 +124,25 @@ public:
     }
 
 private:
+    // Where the course leaves the n-th node of the chain into its n-th junction, or comes from it
+    // into the next one.
+    glm::dvec3 mouthMm(std::size_t n, bool intoNext) const {
+        const ChainJunction& junction = graph_.graph.junctions[std::size_t(chain_.junctions[n])];
+        if (junction.kind != JunctionKind::collapse) return junction.placeMm;
+        const CollapsePath& path = graph_.collapses[std::size_t(junction.path)];
+        const bool leadsOn = junction.a == chain_.nodes[n];
+        return leadsOn == intoNext ? path.pointsMm.back() : path.pointsMm.front();
+    }
+
+    // From mouth to mouth by the middle of its ball; of the first and the last node, from the
+    // ball's rim and to it.
+    double wayThrough(std::size_t n) const {
+        const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
+        const bool isFirst = n == 0, isLast = n + 1 == chain_.nodes.size();
+        return (isFirst ? node.radiusMm : glm::distance(mouthMm(n - 1, true), node.centreMm)) +
+               (isLast ? node.radiusMm : glm::distance(node.centreMm, mouthMm(n, false)));
+    }
+
     const TubePiece& pieceOf(int node) const {
         return cut_.pieces[std::size_t(graph_.pieceOf[std::size_t(node)])];
     }
@@ -384,7 +403,12 @@ private:
             const ColonJunction& junction = made_.junctions[n];
             const char* const part = toString(made_.pieces[n].part);
             if (junction.kind == JunctionKind::collapse) {
-                say(printed("the %s is collapsed over %.0f mm, at %s", part, junction.lengthMm,
+                // Which of the two nobody can tell from where the lumen ends.
+                constexpr double leastToldMm = 0.5;
+                const std::string over = junction.lengthMm < leastToldMm
+                                             ? std::string()
+                                             : printed(" over %.0f mm", junction.lengthMm);
+                say(printed("the %s is collapsed%s, or a mass closes it, at %s", part, over.c_str(),
                             placeText(junction.placeMm).c_str()));
             } else if (junction.kind == JunctionKind::thinWall) {
                 say(printed("what looks like a thin wall in the %s was taken for open lumen, at %s",

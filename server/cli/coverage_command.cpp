@@ -50,9 +50,9 @@ struct CoverageArguments {
 struct Inputs {
     CoverageWall wall;
     Volume<float> distance;
-    std::vector<ColonPiece> pieces;                      ///< empty: not known
-    std::vector<std::int32_t> sourceTriangle;            ///< of each fine one
-    std::optional<std::vector<std::int32_t>> flattened;  ///< source triangles of the flat map
+    std::vector<ColonPiece> pieces;            ///< empty: not known
+    std::vector<std::int32_t> sourceTriangle;  ///< of each fine one
+    std::optional<FlatMap> flattened;
     std::vector<store::ProductKey> keys;
 };
 
@@ -89,7 +89,7 @@ Result<Inputs> readInputs(const store::Case& source, bool optical) {
     }
     if (source.find(product::flatMap)) {
         TRY(note(product::flatMap));
-        inputs.flattened = TRY(source.readFlatMap()).sourceTriangle;
+        inputs.flattened = TRY(source.readFlatMap());
     }
     return inputs;
 }
@@ -237,7 +237,7 @@ std::vector<CenterlineCamera> camerasAlong(const CoverageArguments& arguments,
 /// Of the wall's area, what the flat map has: it leaves out a hole at either end.
 double flattenedPercent(const Inputs& inputs) {
     std::vector<std::uint8_t> has;
-    for (const std::int32_t triangle : *inputs.flattened) {
+    for (const std::int32_t triangle : inputs.flattened->sourceTriangle) {
         if (std::size_t(triangle) >= has.size()) has.resize(std::size_t(triangle) + 1, 0);
         has[std::size_t(triangle)] = 1;
     }
@@ -430,7 +430,10 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
     report.missed = wall.missed(seen);
     for (std::size_t n = 0; n < seen.size(); ++n)
         if (wall.bridged[n]) report.bridgedMm2 += wall.areaMm2(n);
-    report.segmentOfTriangle = segmentsOf(wall, inputs.pieces, arguments.threads);
+    report.segmentOfTriangle =
+        segmentsOf(arcsOf(wall, inputs.sourceTriangle,
+                          inputs.flattened ? &*inputs.flattened : nullptr, arguments.threads),
+                   segmentsAlong(wall.centerline, inputs.pieces));
     if (!report.segmentOfTriangle.empty())
         report.segments = sharesBySegment(wall, seen, report.segmentOfTriangle);
     if (inputs.flattened) report.flattenedPercent = flattenedPercent(inputs);

@@ -2,6 +2,7 @@
 #include "core/colon_record.h"
 
 #include "core/colon_edits.h"
+#include "core/segments_along.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -63,6 +64,49 @@ TEST(ColonRecord, ItsJsonSaysAllOfIt) {
     EXPECT_EQ(other.at("left_out_untagged_ml"), 7.25);
     EXPECT_EQ(other.at("left_out")[2].at("content"), "untagged");
     EXPECT_EQ(other.at("left_out")[0].at("like_colon"), true);
+}
+
+// Up x = 0 for 100 mm, 20 mm across, and down x = 20.
+Centerline hairpin() {
+    Centerline path;
+    for (int mm = 0; mm <= 220; ++mm) {
+        const glm::dvec3 at = mm <= 100   ? glm::dvec3(0, 0, mm)
+                              : mm <= 120 ? glm::dvec3(mm - 100, 0, 100)
+                                          : glm::dvec3(20, 0, 220 - mm);
+        path.points.push_back({at, double(mm), 8.0, false});
+    }
+    return path;
+}
+
+TEST(SegmentsAlong, BordersLieHalfWayBetweenPiecesOfTwoSegments) {
+    const auto starts = segmentsAlong(hairpin(), {{ColonPart::rectum, {1, 0, 10}},
+                                                  {ColonPart::sigmoid, {-2, 0, 50}},
+                                                  {ColonPart::sigmoid, {10, 1, 99}},
+                                                  {ColonPart::cecum, {19, 0, 30}}});
+    EXPECT_EQ(segmentAt(starts, -5.0), ColonSegment::rectum);
+    EXPECT_EQ(segmentAt(starts, 29.9), ColonSegment::rectum);
+    EXPECT_EQ(segmentAt(starts, 30.1), ColonSegment::sigmoid);
+    EXPECT_EQ(segmentAt(starts, 149.0), ColonSegment::sigmoid);
+    EXPECT_EQ(segmentAt(starts, 151.0), ColonSegment::cecum);
+    EXPECT_EQ(segmentAt(starts, 1e6), ColonSegment::cecum);
+    EXPECT_FALSE(segmentAt(segmentsAlong(hairpin(), {}), 10.0));
+    EXPECT_FALSE(segmentAt(segmentsAlong({}, {{ColonPart::rectum, {0, 0, 10}}}), 10.0));
+}
+
+TEST(SegmentsAlong, APieceThatIsNearestToAnotherLoopMovesNoBorder) {
+    const std::vector<ColonPiece> pieces{{ColonPart::rectum, {0, 0, 10}},
+                                         {ColonPart::sigmoid, {11, 0, 40}},  // nearer to x = 20
+                                         {ColonPart::sigmoid, {0, 0, 60}},
+                                         {ColonPart::transverse, {10, 0, 100}},
+                                         {ColonPart::cecum, {20, 0, 20}}};
+    const auto starts = segmentsAlong(hairpin(), pieces);
+    ASSERT_EQ(starts.size(), 4u);
+    for (std::size_t n = 1; n < starts.size(); ++n) {
+        EXPECT_GT(starts[n].arcMm, starts[n - 1].arcMm);
+        EXPECT_GT(int(starts[n].segment), int(starts[n - 1].segment));
+    }
+    EXPECT_EQ(segmentAt(starts, 40.0), ColonSegment::sigmoid);
+    EXPECT_EQ(segmentAt(starts, 180.0), ColonSegment::cecum);
 }
 
 TEST(ColonRecord, PiecesReadBack) {

@@ -14,7 +14,7 @@ ColonRecord wholeColon() {
     constexpr double mm[colonParts] = {150, 400, 200, 80, 450, 80, 160, 70};
     ColonRecord record;
     for (int part = 0; part < colonParts; ++part) {
-        record.pieces.push_back({ColonPart(part), glm::dvec3(0.0), 15.0, mm[part], 100.0, 10.0});
+        record.pieces.push_back({.part = ColonPart(part), .radiusMm = 15.0, .tubeMm = mm[part]});
         if (part > 0) record.junctions.push_back({});
     }
     record.chainConfidence = 1.0;
@@ -128,6 +128,10 @@ TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     EXPECT_TRUE(lowers([](ColonRecord& r) {
         r.leftOut.push_back({{}, 30.0, BodyContent::gas, {}, 3.0, true});
     }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) {
+        r.leftOut.push_back({{}, 200.0, BodyContent::tagged, {}, 0.0, true});
+    }));
+    EXPECT_TRUE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 14000.0, false}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, true}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.untaggedPools.push_back({{}, {}, 900.0, 10.0}); }));
     EXPECT_TRUE(lowers([](ColonRecord& r) { r.cutEnds.push_back({{}, {}, 500.0}); }));

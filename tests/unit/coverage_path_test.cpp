@@ -233,5 +233,31 @@ TEST(CoverageReportText, TellsEachTrianglesVisibilityAndRefusesOtherTexts) {
     EXPECT_FALSE(triangleFlagsOf("no JSON", seen.size()));
 }
 
+// Two loops side by side: the wall that the flat map has is of its own loop, though the other's
+// centerline is nearer.
+TEST(CoverageSegments, FollowTheFlatMapWhereItHasTheWall) {
+    CoverageWall wall;
+    wall.mesh.vertices = {{11, 0, 30}, {11, 1, 30}, {11, 0, 31}};
+    wall.mesh.triangles = {{0, 1, 2}, {0, 1, 2}};
+    for (int mm = 0; mm <= 100; ++mm)
+        wall.centerline.points.push_back({{0, 0, mm}, double(mm), 10.0, false});
+    for (int mm = 0; mm <= 100; ++mm)
+        wall.centerline.points.push_back({{20, 0, 100 - mm}, 120.0 + mm, 10.0, false});
+    FlatMap map;
+    map.surface = {wall.mesh.vertices, {{0, 1, 2}}};
+    map.flat.resize(3);
+    map.camera = {0, 0, 1};
+    map.sourceTriangle = {1};
+    map.cameras = {{{0, 0, 30}, 30.0}, {{0, 0, 33}, 33.0}};
+    const auto arcs = arcsOf(wall, {0, 1}, &map, 1);
+    EXPECT_NEAR(arcs[0], 190.0, 0.6) << "the map lacks it";
+    EXPECT_NEAR(arcs[1], 31.0, 1e-9);
+    const auto segments =
+        segmentsOf(arcs, {{0.0, ColonSegment::sigmoid}, {110.0, ColonSegment::transverse}});
+    EXPECT_EQ(segments, (std::vector{ColonSegment::transverse, ColonSegment::sigmoid}));
+    EXPECT_EQ(arcsOf(wall, {0, 1}, nullptr, 1)[1], arcs[0]);
+    EXPECT_TRUE(segmentsOf(arcs, {}).empty());
+}
+
 }  // namespace
 }  // namespace haustra::coverage

@@ -158,6 +158,10 @@ TEST(FindColon, IsTheColonWithItsFluidAndNothingElse) {
         EXPECT_EQ(junction.kind, JunctionKind::openLumen);
     EXPECT_LT(found->record.pieces.front().centreMm.z, 150.0);
     EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
+    double axisMm = colon().front().radiusMm + colon().back().radiusMm;
+    for (const Capsule& c : colon())
+        axisMm += glm::distance(c.a, c.b);
+    EXPECT_NEAR(found->record.lengthMm() / axisMm, 1.0, 0.1);
 }
 
 // The drawing between two heights, in a scan that ends there.
