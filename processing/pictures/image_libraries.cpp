@@ -3,6 +3,8 @@
 #include "core/program_module.h"
 
 #include <algorithm>
+#include <limits>
+#include <string>
 
 namespace haustra::pictures {
 
@@ -29,8 +31,21 @@ bool isPictureFile(const fs::path& file) {
     return std::find(endings.begin(), endings.end(), file.extension().string()) != endings.end();
 }
 
+int mostSide(const fs::path& file) {
+    const std::string ending = file.extension().string();
+    if (ending == ".jpg" || ending == ".jpeg") return 65500;
+    return ending == ".png" ? 1'000'000 : std::numeric_limits<int>::max();
+}
+
 Result<std::unique_ptr<PictureFile>> createPicture(const fs::path& file, int width, int height,
                                                    const Provenance& provenance) {
+    // libjpeg ends the program at a picture that it cannot hold.
+    if (std::max(width, height) > mostSide(file))
+        return fail(ErrorKind::badInput,
+                    "a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                        " pixels does not fit this format, whose sides are " +
+                        std::to_string(mostSide(file)) + " pixels at most",
+                    file.string());
     return TRY(libraries())->createPicture(file, width, height, provenance);
 }
 

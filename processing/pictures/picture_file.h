@@ -21,6 +21,9 @@ namespace haustra::pictures {
 const std::vector<std::string>& fileEndings();
 /// Whether the file's name has one of the endings, in small letters.
 bool isPictureFile(const std::filesystem::path& file);
+/// Longest side, pixels, of a picture in the format that the file's ending names: 65,500 of JPEG
+/// and a million of PNG, their libraries' own limits; of the others any.
+int mostSide(const std::filesystem::path& file);
 
 /// Where a picture comes from. It goes into the file as text that every program shows: `software`
 /// as its Software, the facts as its ImageDescription, "name=value; name=value" (`oiiotool --info
@@ -44,7 +47,8 @@ public:
     virtual Result<void> finish() = 0;
 };
 
-/// Fails, as the file's own functions do, naming the file.
+/// Fails, as the file's own functions do, naming the file; where a side is over mostSide, before
+/// anything is made.
 Result<std::unique_ptr<PictureFile>> createPicture(const std::filesystem::path& file, int width,
                                                    int height, const Provenance& provenance);
 

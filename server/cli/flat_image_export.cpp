@@ -20,6 +20,8 @@
 
 namespace haustra::cli {
 
+namespace fs = std::filesystem;
+
 namespace product = store::product;
 
 void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
@@ -53,20 +55,32 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
     addThreadsOption(*group, options.threads);
 }
 
-Result<void> exportFlatImage(const store::Case& source, const std::filesystem::path& file,
+namespace {
+
+/// The most --width with which a strip `height` circumferences long, its margins with it, is a
+/// picture that `file` holds.
+double widestStrip(const fs::path& file, double height, double seamMargin) {
+    const double side = pictures::mostSide(file);
+    const double across = (side - 1.0) / (1.0 + 2.0 * seamMargin),  // either margin is rounded
+        along = std::min(double(render::maxStripRows), side) / height;
+    return std::floor(std::min({double(render::maxPixelsPerUnit), across, along}));
+}
+
+}  // namespace
+
+Result<void> exportFlatImage(const store::Case& source, const fs::path& file,
                              const FlatImageOptions& options) {
     auto map = TRY(source.readFlatMap());
     const double height = map.height;
     auto function = TRY(render::opticsPreset(options.transferFunction));
     render::StripPicture picture{options.width, options.seamMargin, std::move(function), {}};
-    const double widest = std::min(double(render::maxPixelsPerUnit),
-                                   std::floor(double(render::maxStripRows) / height));
+    const double widest = widestStrip(file, height, options.seamMargin);
     if (options.width > widest) {
         return fail(ErrorKind::badInput,
-                    fmt::format("a strip {:.4g} circumferences long fits a picture up to --width "
-                                "{:.0f}",
-                                height, widest),
-                    "flat image");
+                    fmt::format("a strip {:.4g} circumferences long fits a {} picture up to "
+                                "--width {:.0f}",
+                                height, file.extension().string(), widest),
+                    file.string());
     }
     const auto size = TRY(render::stripPictureSize(picture, height));
 

@@ -155,6 +155,27 @@ TEST_F(FlatImage, ACaptionIsDrawnOntoTheSamePicture) {
     EXPECT_LT(changed, plain.rgb.size() / 10);
 }
 
+// JPEG's sides end where no other format's do.
+TEST_F(FlatImage, AStripThatItsFormatCannotHoldIsRefusedBeforeItIsDrawn) {
+    const std::string jpeg = folder_->path() / "long.jpg";
+    const auto outcomeOf = [&](int width) {
+        return run({"export", smallCaseName, "flat-image", jpeg, "--width", std::to_string(width)});
+    };
+    const Outcome outcome = outcomeOf(int(65500.0 / tube_.height()) + 1);
+    EXPECT_EQ(outcome.exitCode, 1);
+    EXPECT_EQ(lineCount(outcome.err), 1u) << outcome.err;
+    EXPECT_NE(outcome.err.find(jpeg + ": "), std::string::npos) << outcome.err;
+    // One pixel more than what it says is refused, too.
+    const std::string option = "--width ";
+    const std::size_t told = outcome.err.find(option);
+    ASSERT_NE(told, std::string::npos) << outcome.err;
+    const int widest = std::stoi(outcome.err.substr(told + option.size()));
+    EXPECT_NEAR(widest, std::min(65500.0, 65500.0 / tube_.height()), 2.0);
+    EXPECT_EQ(outcomeOf(widest + 1).exitCode, 1);
+    for (const auto& file : std::filesystem::directory_iterator(folder_->path()))
+        EXPECT_NE(file.path().stem(), "long") << file.path();
+}
+
 TEST_F(FlatImage, SaysWhatIsWrong) {
     const auto says = [](const Outcome& outcome, int exitCode, const char* words) {
         EXPECT_EQ(outcome.exitCode, exitCode) << words;

@@ -108,6 +108,20 @@ TEST_F(PictureFiles, APictureThatIsNotWholeLeavesNothing) {
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+TEST_F(PictureFiles, ASideThatTheFormatCannotHoldIsRefusedBeforeAFileIsMade) {
+    for (const auto& [name, most] :
+         {std::pair("a.jpg", 65500), {"a.jpeg", 65500}, {"a.png", 1000000}}) {
+        EXPECT_EQ(mostSide(at(name)), most);
+        for (const glm::ivec2 size : {glm::ivec2(most + 1, 1), {1, most + 1}})
+            refused(createPicture(at(name), size.x, size.y, provenance), at(name),
+                    std::to_string(most).c_str());
+        EXPECT_TRUE(fs::is_empty(folder_)) << name;
+        for (const glm::ivec2 size : {glm::ivec2(most, 1), {1, most}})
+            EXPECT_TRUE(writePicture(at(name), blankImage(size), provenance)) << name;
+        fs::remove(at(name));
+    }
+}
+
 TEST_F(PictureFiles, ADiskThatIsFullIsNotHidden) {
     ::signal(SIGXFSZ, SIG_IGN);
     rlimit before{};
