@@ -37,6 +37,10 @@ struct Marks {
     double textHeight = 10.0;  ///< of a capital letter, pixels
 };
 
+/// Pixels from the left to the right of `text`, printable ASCII with capital letters `textHeight`
+/// pixels high, as draw writes it; without its rim, two pixels at most.
+Result<double> textWidth(const std::string& text, double textHeight);
+
 /// Draws the marks, or what of them lies in the band of the picture whose first row is `firstRow`.
 /// The same pixels in whatever bands.
 Result<void> draw(const Marks& marks, Image& band, int firstRow = 0);

@@ -67,6 +67,10 @@ Result<Image> sideBySide(const std::vector<Image>& panels) {
     return TRY(libraries())->sideBySide(panels);
 }
 
+Result<double> textWidth(const std::string& text, double textHeight) {
+    return TRY(libraries())->textWidth(text, textHeight);
+}
+
 Result<void> draw(const Marks& marks, Image& band, int firstRow) {
     return TRY(libraries())->draw(marks, band, firstRow);
 }

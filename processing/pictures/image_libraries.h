@@ -14,6 +14,7 @@ decltype(pictures::createPicture) createPicture;
 decltype(pictures::readGreyPicture) readGreyPicture;
 decltype(pictures::readColorPicture) readColorPicture;
 decltype(pictures::sideBySide) sideBySide;
+decltype(pictures::textWidth) textWidth;
 decltype(pictures::draw) draw;
 }  // namespace module
 
@@ -22,6 +23,7 @@ struct ImageLibraries {
     decltype(&module::readGreyPicture) readGreyPicture;
     decltype(&module::readColorPicture) readColorPicture;
     decltype(&module::sideBySide) sideBySide;
+    decltype(&module::textWidth) textWidth;
     decltype(&module::draw) draw;
 };
 

@@ -22,23 +22,34 @@ cv::Scalar scalar(glm::u8vec3 color) {
 constexpr int font = cv::FONT_HERSHEY_SIMPLEX;
 constexpr double capitalHeight = 21.0;  // of the font at scale 1, pixels
 
+/// What text of one height is written with.
+struct Pen {
+    double scale = 1.0;  ///< of the font
+    int thickness = 1;   ///< pixels
+
+    explicit Pen(double textHeight)
+        : scale(textHeight / capitalHeight),
+          thickness(std::max(1, int(std::lround(textHeight / 10.0)))) {}
+    double widthOf(const std::string& text) const {
+        return cv::getTextSize(text, font, scale, thickness, nullptr).width;
+    }
+};
+
 void drawMarks(const Marks& marks, cv::Mat& pixels, int firstRow) {
-    const double scale = marks.textHeight / capitalHeight;
-    const int thickness = std::max(1, int(std::lround(marks.textHeight / 10.0)));
+    const Pen pen(marks.textHeight);
     const cv::Scalar dark(0, 0, 0);
     // The rims of all before any of the marks.
     for (const bool rim : {true, false}) {
-        const int wide = rim ? thickness + 2 : thickness;
+        const int wide = rim ? pen.thickness + 2 : pen.thickness;
         for (const Marks::Line& line : marks.lines)
             cv::line(pixels, {line.from.x, line.from.y - firstRow},
                      {line.to.x, line.to.y - firstRow}, rim ? dark : scalar(line.color), wide,
                      cv::LINE_8);
         for (const Marks::Words& words : marks.words) {
-            const double width = cv::getTextSize(words.text, font, scale, thickness, nullptr).width;
-            const double left = words.at.x - words.anchor.x * width,
+            const double left = words.at.x - words.anchor.x * pen.widthOf(words.text),
                          base = words.at.y + (1.0 - words.anchor.y) * marks.textHeight - firstRow;
             cv::putText(pixels, words.text, {int(std::lround(left)), int(std::lround(base))}, font,
-                        scale, rim ? dark : scalar(words.color), wide, cv::LINE_AA);
+                        pen.scale, rim ? dark : scalar(words.color), wide, cv::LINE_AA);
         }
     }
 }
@@ -57,6 +68,12 @@ Result<Image> sideBySide(const std::vector<Image>& panels) try {
     return Image{joined.cols, joined.rows, {joined.datastart, joined.dataend}};
 } catch (const std::exception&) {
     return fail(ErrorKind::badInput, "the panels are of different heights, or too large");
+}
+
+Result<double> textWidth(const std::string& text, double textHeight) try {
+    return Pen(textHeight).widthOf(text);
+} catch (const std::exception&) {
+    return fail(ErrorKind::badInput, "the text cannot be measured");
 }
 
 Result<void> draw(const Marks& marks, Image& band, int firstRow) try {

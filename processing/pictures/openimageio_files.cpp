@@ -348,6 +348,7 @@ extern "C" const haustra::pictures::ImageLibraries haustraImageLibraries = [] {
     using namespace haustra::pictures;
     OIIO::attribute("threads", 1);  // no threads of its own
     OIIO::attribute("exr_threads", -1);
-    return ImageLibraries{&module::createPicture, &module::readGreyPicture,
-                          &module::readColorPicture, &module::sideBySide, &module::draw};
+    return ImageLibraries{&module::createPicture,    &module::readGreyPicture,
+                          &module::readColorPicture, &module::sideBySide,
+                          &module::textWidth,        &module::draw};
 }();

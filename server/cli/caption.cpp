@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@ namespace haustra::cli {
 namespace {
 
 double textHeight(glm::ivec2 size) {
-    return std::clamp(size.y / 45.0, 6.0, 24.0);
+    return std::clamp(std::min(size.x, size.y) / 45.0, 6.0, 24.0);
 }
 
 /// The largest of 1, 2, 5, 10, 20 … that is at most `most`.
@@ -22,25 +23,167 @@ double roundBelow(double most) {
     return ten * (most >= 5.0 * ten ? 5.0 : most >= 2.0 * ten ? 2.0 : 1.0);
 }
 
-void addFrame(pictures::Marks& marks, const PictureFrame& frame, glm::ivec2 size, int left) {
-    const int gap = int(marks.textHeight / 2.0) + 2;
-    const auto letter = [&](glm::dvec3 direction, glm::ivec2 at, glm::dvec2 anchor) {
-        marks.words.push_back({orientation(direction), {left + at.x, at.y}, anchor});
-    };
-    letter(-frame.right, {gap, size.y / 2}, {0.0, 0.5});
-    letter(frame.right, {size.x - gap, size.y / 2}, {1.0, 0.5});
-    letter(-frame.down, {size.x / 2, gap}, {0.5, 0.0});
-    letter(frame.down, {size.x / 2, size.y - gap}, {0.5, 1.0});
+/// `text`; of one that is over `widest` pixels wide its beginning and its end, as much as fits:
+/// the place that a picture shows is told last.
+Result<std::string> elided(const std::string& text, double widest, double height) {
+    std::string shown = text;
+    for (std::size_t kept = text.size(); kept > 0; --kept) {
+        if (TRY(pictures::textWidth(shown, height)) <= widest) break;
+        shown = text.substr(0, kept / 2) + "..." + text.substr(text.size() - (kept - 1) / 2);
+    }
+    return shown;
 }
 
-void addBar(pictures::Marks& marks, double mmPerPixel, glm::ivec2 size) {
-    const int gap = int(marks.textHeight / 2.0) + 2, low = size.y - gap - 2;
-    const double mm = roundBelow(mmPerPixel * size.x / 4.0);
-    const int length = int(std::lround(mm / mmPerPixel)), right = size.x - gap;
-    marks.lines.push_back({{right - length, low}, {right, low}});
+/// A part of the picture with marks of its own: all of its rows, from the column `left` on.
+struct Panel {
+    int left = 0;
+    glm::ivec2 size{0};
+};
+
+/// Pixels that a mark takes.
+struct Box {
+    glm::dvec2 low{0.0}, high{0.0};
+};
+
+/// Places marks one after another so that all can be read: of what would touch an earlier one, or
+/// leave its panel, text goes to a lower row, and what has no place there is left out.
+class Layout {
+public:
+    explicit Layout(double textHeight) { marks_.textHeight = textHeight; }
+    pictures::Marks marks() && { return std::move(marks_); }
+
+    double height() const { return marks_.textHeight; }
+    /// Between marks and the panel's edge, pixels.
+    int gap() const { return int(height() / 2.0) + 2; }
+    /// From one row of text to the next, pixels.
+    int rowPitch() const { return int(std::ceil(2.0 * height())); }
+
+    /// Whatever is there already: what must be read is added first.
+    Result<void> addAlways(const pictures::Marks::Words& words) {
+        taken_.push_back(TRY(boxOf(words)));
+        marks_.words.push_back(words);
+        return {};
+    }
+    /// With its line, if both have a place there.
+    Result<void> addTick(const Panel& panel, const pictures::Marks::Words& words,
+                         const pictures::Marks::Line& line) {
+        const Box box = TRY(boxOf(words));
+        if (!isFree(panel, box)) return {};
+        marks_.lines.push_back(line);
+        return addAlways(words);
+    }
+    /// In the highest row that has room for it, from the left on; cut short in its middle where no
+    /// row is as wide.
+    Result<void> addText(const Panel& panel, const std::string& text) {
+        const std::string shown = TRY(elided(text, panel.size.x - 2 * gap(), height()));
+        const double width = TRY(pictures::textWidth(shown, height()));
+        const auto at = freeCorner(panel, {width, height()});
+        if (!at) return {};
+        return addAlways({shown, *at, {0.0, 0.0}});
+    }
+    Result<void> addFrame(const Panel& panel, const PictureFrame& frame);
+    Result<void> addBar(const Panel& panel, double mmPerPixel);
+    Result<void> addLegend(const Panel& panel);
+
+private:
+    Result<Box> boxOf(const pictures::Marks::Words& words) const {
+        const glm::dvec2 size(TRY(pictures::textWidth(words.text, height())), height());
+        const glm::dvec2 low = glm::dvec2(words.at) - words.anchor * size;
+        return Box{low, low + size};
+    }
+    bool isFree(const Panel& panel, const Box& box) const {
+        // For rims, and for what hangs below a line of text.
+        const double apart = 2.0 + height() / 4.0;
+        const glm::dvec2 low(panel.left, 0.0), high = low + glm::dvec2(panel.size);
+        return glm::all(glm::greaterThanEqual(box.low, low)) &&
+               glm::all(glm::lessThanEqual(box.high, high)) &&
+               std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) {
+                   return glm::all(glm::lessThan(box.low, other.high + apart)) &&
+                          glm::all(glm::lessThan(other.low, box.high + apart));
+               });
+    }
+    /// The upper left corner, of a row of text, of a free place of this size.
+    std::optional<glm::ivec2> freeCorner(const Panel& panel, glm::dvec2 size) const {
+        for (int y = gap(); y < panel.size.y; y += rowPitch()) {
+            const glm::ivec2 corner(panel.left + gap(), y);
+            if (isFree(panel, {glm::dvec2(corner), glm::dvec2(corner) + size})) return corner;
+        }
+        return {};
+    }
+
+    pictures::Marks marks_;
+    std::vector<Box> taken_;
+};
+
+/// The letters of the directions at the panel's edges.
+Result<void> Layout::addFrame(const Panel& panel, const PictureFrame& frame) {
+    const glm::ivec2 size = panel.size;
+    const auto letter = [&](glm::dvec3 direction, glm::ivec2 at, glm::dvec2 anchor) {
+        return addAlways({orientation(direction), {panel.left + at.x, at.y}, anchor});
+    };
+    TRY(letter(-frame.right, {gap(), size.y / 2}, {0.0, 0.5}));
+    TRY(letter(frame.right, {size.x - gap(), size.y / 2}, {1.0, 0.5}));
+    TRY(letter(-frame.down, {size.x / 2, gap()}, {0.5, 0.0}));
+    return letter(frame.down, {size.x / 2, size.y - gap()}, {0.5, 1.0});
+}
+
+/// Of a round number of millimetres, with that above it, in the lower right corner.
+Result<void> Layout::addBar(const Panel& panel, double mmPerPixel) {
+    const int low = panel.size.y - gap() - 2, right = panel.left + panel.size.x - gap();
+    const double mm = roundBelow(mmPerPixel * panel.size.x / 4.0);
+    const int length = int(std::lround(mm / mmPerPixel));
+    const pictures::Marks::Words words{
+        fmt::format("{:g} mm", mm), {right, low - gap()}, {1.0, 1.0}};
+    Box box = TRY(boxOf(words));
+    box.low.x = std::min(box.low.x, double(right - length));
+    box.high.y = low;
+    if (!isFree(panel, box)) return {};
+    taken_.push_back(box);
+    marks_.words.push_back(words);
+    marks_.lines.push_back({{right - length, low}, {right, low}});
     for (const int end : {right - length, right})
-        marks.lines.push_back({{end, low - gap / 2}, {end, low}});
-    marks.words.push_back({fmt::format("{:g} mm", mm), {right, low - gap}, {1.0, 1.0}});
+        marks_.lines.push_back({{end, low - gap() / 2}, {end, low}});
+    return {};
+}
+
+/// The tissues' colours, each with its name: all of them, or none.
+Result<void> Layout::addLegend(const Panel& panel) {
+    const std::array tissues{std::pair("air", render::airColor),
+                             std::pair("soft tissue", render::softColor),
+                             std::pair("tagged, bone", render::taggedColor),
+                             std::pair("air meets tagged", render::interfaceColor)};
+    const int side = int(std::lround(height()));
+    double widest = 0.0;
+    for (const auto& [text, color] : tissues)
+        widest = std::max(widest, TRY(pictures::textWidth(text, height())));
+    const glm::dvec2 size(side + gap() + widest, rowPitch() * (int(tissues.size()) - 1) + height());
+    const auto corner = freeCorner(panel, size);
+    if (!corner) return {};
+    taken_.push_back({glm::dvec2(*corner), glm::dvec2(*corner) + size});
+    glm::ivec2 at = *corner;
+    for (const auto& [text, color] : tissues) {
+        for (int y = at.y; y < at.y + side; ++y)
+            marks_.lines.push_back({{at.x, y}, {at.x + side, y}, color});
+        marks_.words.push_back({text, {at.x + side + gap(), at.y}, {0.0, 0.0}});
+        at.y += rowPitch();
+    }
+    return {};
+}
+
+/// Of each camera that sees any of the wall: its arc length, mm, and its row of a picture of the
+/// strip `rows` high: the middle of what it sees.
+std::vector<glm::dvec2> camerasOnStrip(const FlatMap& map, int rows) {
+    std::vector<double> sum(map.cameras.size()), count(map.cameras.size());
+    for (std::size_t v = 0; v < map.flat.size(); ++v) {
+        sum[std::size_t(map.camera[v])] += map.flat[v].y;
+        count[std::size_t(map.camera[v])] += 1.0;
+    }
+    std::vector<glm::dvec2> places;
+    for (std::size_t c = 0; c < sum.size(); ++c)
+        if (count[c] > 0.0)
+            places.emplace_back(map.cameras[c].arcMm,
+                                (1.0 - sum[c] / count[c] / map.height) * rows);
+    return places;
 }
 
 }  // namespace
@@ -72,67 +215,44 @@ std::string orientation(glm::dvec3 direction) {
     return text;
 }
 
-pictures::Marks caption(const std::string& line, const std::optional<PictureFrame>& frame,
-                        glm::ivec2 size) {
-    pictures::Marks marks;
-    marks.textHeight = textHeight(size);
-    const int gap = int(marks.textHeight / 2.0) + 2;
-    marks.words.push_back({line, {gap, gap}, {0.0, 0.0}});
+Result<pictures::Marks> caption(const std::string& line, const std::optional<PictureFrame>& frame,
+                                glm::ivec2 size) {
+    Layout layout(textHeight(size));
+    const Panel whole{0, size};
     if (frame) {
-        addFrame(marks, *frame, size, 0);
-        addBar(marks, frame->mmPerPixel, size);
+        TRY(layout.addFrame(whole, *frame));
+        TRY(layout.addBar(whole, frame->mmPerPixel));
     }
-    return marks;
+    TRY(layout.addText(whole, line));
+    return std::move(layout).marks();
 }
 
-pictures::Marks comparisonCaption(const std::string& line, const PictureFrame& frame,
-                                  glm::ivec2 size) {
-    pictures::Marks marks = caption(line, frame, size);
-    const int gap = int(marks.textHeight / 2.0) + 2, row = int(std::ceil(2.0 * marks.textHeight));
+Result<pictures::Marks> comparisonCaption(const std::string& line, const PictureFrame& frame,
+                                          glm::ivec2 size) {
+    Layout layout(textHeight(size));
     const int step = size.x + pictures::separatorPixels;
-    for (const int panel : {1, 2})
-        addFrame(marks, frame, size, panel * step);
-    const auto title = [&](const char* text, int panel, int line_) {
-        marks.words.push_back({text, {panel * step + gap, gap + line_ * row}, {0.0, 0.0}});
-    };
-    title("before", 0, 1);
-    title("tissues", 1, 0);
-    title("after", 2, 0);
-    int below = gap;
-    const int side = int(std::lround(marks.textHeight));
-    for (const auto& [text, color] :
-         {std::pair("air", render::airColor), std::pair("soft tissue", render::softColor),
-          std::pair("tagged, bone", render::taggedColor),
-          std::pair("air meets tagged", render::interfaceColor)}) {
-        below += row;
-        for (int y = below; y < below + side; ++y)
-            marks.lines.push_back({{step + gap, y}, {step + gap + side, y}, color});
-        marks.words.push_back({text, {step + 2 * gap + side, below}, {0.0, 0.0}});
-    }
-    return marks;
+    const Panel before{0, size}, tissues{step, size}, after{2 * step, size};
+    for (const Panel& panel : {before, tissues, after})
+        TRY(layout.addFrame(panel, frame));
+    TRY(layout.addBar(before, frame.mmPerPixel));
+    TRY(layout.addText(before, "before"));
+    TRY(layout.addText(tissues, "tissues"));
+    TRY(layout.addText(after, "after"));
+    TRY(layout.addLegend(tissues));
+    TRY(layout.addText(before, line));
+    return std::move(layout).marks();
 }
 
-pictures::Marks stripCaption(const FlatMap& map, glm::ivec2 size) {
-    pictures::Marks marks;
-    marks.textHeight = std::clamp(size.x / 40.0, 6.0, 24.0);
-    const int gap = int(marks.textHeight / 2.0) + 2;
-    marks.words.push_back({"cecum", {size.x / 2, gap}, {0.5, 0.0}});
-    marks.words.push_back({"rectum", {size.x / 2, size.y - gap}, {0.5, 1.0}});
+Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size) {
+    Layout layout(std::clamp(size.x / 40.0, 6.0, 24.0));
+    const int gap = layout.gap();
+    TRY(layout.addAlways({"cecum", {size.x / 2, gap}, {0.5, 0.0}}));
+    TRY(layout.addAlways({"rectum", {size.x / 2, size.y - gap}, {0.5, 1.0}}));
 
-    // Each camera's place on the strip: the middle of what it sees.
-    std::vector<double> sum(map.cameras.size()), count(map.cameras.size());
-    for (std::size_t v = 0; v < map.flat.size(); ++v) {
-        sum[std::size_t(map.camera[v])] += map.flat[v].y;
-        count[std::size_t(map.camera[v])] += 1.0;
-    }
-    std::vector<glm::dvec2> places;  // arc, row
-    for (std::size_t c = 0; c < sum.size(); ++c)
-        if (count[c] > 0.0)
-            places.emplace_back(map.cameras[c].arcMm,
-                                (1.0 - sum[c] / count[c] / map.height) * size.y);
-    if (places.size() < 2) return marks;
+    const auto places = camerasOnStrip(map, size.y);
+    if (places.size() < 2) return std::move(layout).marks();
     const double length = places.back().x - places.front().x;
-    const double ticks = std::max(1.0, size.y / (6.0 * marks.textHeight));
+    const double ticks = std::max(1.0, size.y / (6.0 * layout.height()));
     const double least = std::max(length / ticks, 1.0);
     const double step = roundBelow(least) < least ? roundBelow(2.5 * least) : least;
     std::size_t at = 0;
@@ -143,10 +263,11 @@ pictures::Marks stripCaption(const FlatMap& map, glm::ivec2 size) {
         const glm::dvec2 low = places[at], high = places[at + 1];
         const double part = (arc - low.x) / std::max(high.x - low.x, 1e-9);
         const int row = int(std::lround(glm::mix(low.y, high.y, std::clamp(part, 0.0, 1.0))));
-        marks.lines.push_back({{0, row}, {2 * gap, row}});
-        marks.words.push_back({fmt::format("{:g} mm", arc), {3 * gap, row}, {0.0, 0.5}});
+        const int beside = std::clamp(row, gap, std::max(gap, size.y - gap));  // whole at the ends
+        TRY(layout.addTick({0, size}, {fmt::format("{:g} mm", arc), {3 * gap, beside}, {0.0, 0.5}},
+                           {{0, row}, {2 * gap, row}}));
     }
-    return marks;
+    return std::move(layout).marks();
 }
 
 }  // namespace haustra::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/flat_map.h"
+#include "core/result.h"
 #include "core/slice_placement.h"
 #include "pictures/drawing.h"
 #include "render/scene/picture.h"
@@ -27,18 +28,20 @@ std::optional<PictureFrame> frameOf(const Camera& camera, int pictureHeight);
 /// Where a direction of the patient points: one or two of L, R, A, P, H and F, the nearer first.
 std::string orientation(glm::dvec3 direction);
 
-/// `line` at the bottom; with a frame, the letters of the directions at the edges, and a bar of a
-/// round number of millimetres.
-pictures::Marks caption(const std::string& line, const std::optional<PictureFrame>& frame,
-                        glm::ivec2 size);
+/// `line` at the top; with a frame, the letters of the directions at the edges, which nothing
+/// covers, and a bar of a round number of millimetres. A line that would reach a letter is a row
+/// lower, and one that is too long is cut short; a bar without room is left out.
+Result<pictures::Marks> caption(const std::string& line, const std::optional<PictureFrame>& frame,
+                                glm::ivec2 size);
 
 /// The same for a comparison of three panels of `size`, each with its title, the middle one with
-/// the tissues' colours.
-pictures::Marks comparisonCaption(const std::string& line, const PictureFrame& frame,
-                                  glm::ivec2 size);
+/// the tissues' colours if they have room.
+Result<pictures::Marks> comparisonCaption(const std::string& line, const PictureFrame& frame,
+                                          glm::ivec2 size);
 
 /// Of the whole strip in a picture of `size`: its ends, and a scale of millimetres along the
-/// centerline, from the rectum, where the wall's cameras stand.
-pictures::Marks stripCaption(const FlatMap& map, glm::ivec2 size);
+/// centerline, from the rectum, where the wall's cameras stand. Where the map squeezes the colon,
+/// only as many of its marks as can be read.
+Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size);
 
 }  // namespace haustra::cli

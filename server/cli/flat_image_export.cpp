@@ -96,7 +96,8 @@ Result<void> exportFlatImage(const store::Case& source, const fs::path& file,
                              {"seam_margin", fmt::format("{}", options.seamMargin)},
                              {"raycaster", toString(render::RendererOptions{}.raycaster)},
                              {"transfer_function", options.transferFunction}});
-    const auto marks = options.caption ? stripCaption(map, size) : pictures::Marks{};
+    pictures::Marks marks;
+    if (options.caption) marks = TRY(stripCaption(map, size));
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, options.threads));
     prepared.flatMap = std::make_shared<const FlatMap>(std::move(map));
     auto paint =

@@ -422,7 +422,7 @@ Result<Image> drawLabelled(const RenderArguments& arguments, Notes& notes) {
 }
 
 /// What it is of, which view, and where, in a line.
-pictures::Marks captionOf(const RenderArguments& arguments, const Notes& notes) {
+Result<pictures::Marks> captionOf(const RenderArguments& arguments, const Notes& notes) {
     const auto fact = [&](const char* name) -> std::string {
         for (const auto& [known, value] : notes.provenance.facts)
             if (known == name) return value;
@@ -442,7 +442,7 @@ Result<void> runRender(const RenderArguments& arguments) {
     auto image = TRY(!arguments.labels.empty() ? drawLabelled(arguments, notes)
                      : arguments.isScan()      ? drawScan(arguments, notes)
                                                : drawCase(arguments, notes));
-    if (arguments.caption) TRY(pictures::draw(captionOf(arguments, notes), image));
+    if (arguments.caption) TRY(pictures::draw(TRY(captionOf(arguments, notes)), image));
     return pictures::writePicture(arguments.out, image, notes.provenance);
 }
 

@@ -3,7 +3,10 @@
 
 #include "flat_tube.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -16,6 +19,85 @@ std::string wordsAt(const pictures::Marks& marks, glm::dvec2 anchor) {
     for (const auto& words : marks.words)
         if (words.anchor == anchor) text += words.text;
     return text;
+}
+
+struct Box {
+    glm::dvec2 low, high;
+};
+Box boxOf(const pictures::Marks& marks, const pictures::Marks::Words& words) {
+    const glm::dvec2 size(pictures::textWidth(words.text, marks.textHeight).value(),
+                          marks.textHeight);
+    const glm::dvec2 low = glm::dvec2(words.at) - words.anchor * size;
+    return {low, low + size};
+}
+
+/// With a pixel of rim around each, no two words touch, and none leaves its panel of `size`.
+void expectReadable(const pictures::Marks& marks, glm::ivec2 size, const std::string& picture) {
+    std::vector<Box> boxes;
+    for (const auto& words : marks.words) {
+        const Box box = boxOf(marks, words);
+        const int step = size.x + pictures::separatorPixels, left = words.at.x / step * step;
+        EXPECT_GE(box.low.x, left + 1) << words.text << picture;
+        EXPECT_LE(box.high.x, left + size.x - 1) << words.text << picture;
+        EXPECT_GE(box.low.y, 1) << words.text << picture;
+        EXPECT_LE(box.high.y, size.y - 1) << words.text << picture;
+        for (std::size_t n = 0; n < boxes.size(); ++n)
+            EXPECT_TRUE(box.low.x >= boxes[n].high.x + 2 || boxes[n].low.x >= box.high.x + 2 ||
+                        box.low.y >= boxes[n].high.y + 2 || boxes[n].low.y >= box.high.y + 2)
+                << words.text << " on " << marks.words[n].text << picture;
+        boxes.push_back(box);
+    }
+}
+
+int count(const pictures::Marks& marks, const std::string& text) {
+    return int(std::count_if(marks.words.begin(), marks.words.end(),
+                             [&](const auto& words) { return words.text == text; }));
+}
+
+// Whatever the size of the picture and the length of the case's name.
+TEST(Caption, WordsDoNotTouchAndDirectionsAreAlwaysThere) {
+    PictureFrame oblique;
+    oblique.right = glm::normalize(glm::dvec3(1.0, 0.8, 0.1));
+    oblique.down = glm::normalize(glm::cross(glm::dvec3(0.1, 0.1, 1.0), oblique.right));
+    for (const glm::ivec2 size : {glm::ivec2(60, 60),
+                                  {80, 60},
+                                  {60, 400},
+                                  {256, 256},
+                                  {512, 512},
+                                  {2048, 300},
+                                  {300, 2048},
+                                  {2048, 2048}})
+        for (const std::string& name :
+             {std::string("p"), std::string("Ab.cd_long-case-name.prone-2024-11-29"),
+              std::string(120, 'W')})
+            for (const PictureFrame& frame : {PictureFrame{}, oblique}) {
+                const std::string picture =
+                    " of " + name + " " + std::to_string(size.x) + "x" + std::to_string(size.y);
+                const auto one = caption(name + "  axial  400 mm", frame, size).value(),
+                           three = comparisonCaption(name + "  axial", frame, size).value();
+                expectReadable(one, size, picture);
+                expectReadable(three, size, picture);
+                for (const glm::dvec3 direction :
+                     {frame.right, -frame.right, frame.down, -frame.down}) {
+                    EXPECT_EQ(count(one, orientation(direction)), 1) << picture;
+                    EXPECT_EQ(count(three, orientation(direction)), 3) << picture;
+                }
+                for (const char* title : {"before", "tissues", "after"})
+                    EXPECT_EQ(count(three, title), 1) << picture;
+            }
+}
+
+TEST(Caption, ALineThatIsTooLongKeepsItsBeginningAndItsEnd) {
+    std::string line(200, 'x');
+    line.front() = 'A';
+    line += "  axial  400 mm";
+    const auto marks = caption(line, {}, {200, 100}).value();
+    ASSERT_EQ(marks.words.size(), 1u);
+    const std::string& text = marks.words.front().text;
+    EXPECT_TRUE(text.starts_with("Ax")) << text;
+    EXPECT_NE(text.find("..."), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with("400 mm")) << text;
+    EXPECT_GT(boxOf(marks, marks.words.front()).high.x, 150.0);  // no shorter than need be
 }
 
 TEST(Caption, LettersSayWhereDirectionsPoint) {
@@ -36,7 +118,7 @@ TEST(Caption, SlicesAreSeenAsRadiologistsDo) {
         const SliceView view{plane, grid.patientFromVoxelPoint({25, 20, 30}), 1.0, {}};
         const PictureFrame frame = frameOf(*placeSlice(view, grid, 200, 200));
         EXPECT_NEAR(glm::length(frame.right), 1.0, 1e-12);
-        return caption("p", frame, {200, 200});
+        return caption("p", frame, {200, 200}).value();
     };
     const glm::dvec2 left(0.0, 0.5), right(1.0, 0.5), top(0.5, 0.0), bottom(0.5, 1.0);
     const pictures::Marks axial = marksOf(View::axial), coronal = marksOf(View::coronal),
@@ -53,7 +135,7 @@ TEST(Caption, TheBarIsAsLongAsItSays) {
     for (const double mmPerPixel : {0.013, 0.2, 0.77, 3.1}) {
         PictureFrame frame;
         frame.mmPerPixel = mmPerPixel;
-        const pictures::Marks marks = caption("", frame, {512, 400});
+        const pictures::Marks marks = caption("", frame, {512, 400}).value();
         double mm = 0.0;
         for (const auto& words : marks.words)
             if (words.text.ends_with(" mm")) mm = std::stod(words.text);
@@ -80,7 +162,7 @@ TEST(Caption, OnlyParallelRaysHaveAScale) {
 TEST(Caption, TheStripsScaleRunsFromTheRectumUp) {
     const FlatMap map = tests::FlatTube().map();
     const glm::ivec2 size(300, int(300 * map.height));
-    const pictures::Marks marks = stripCaption(map, size);
+    const pictures::Marks marks = stripCaption(map, size).value();
     ASSERT_GT(marks.lines.size(), 2u);
     double before = -1.0;
     int row = size.y + 1;
@@ -90,12 +172,26 @@ TEST(Caption, TheStripsScaleRunsFromTheRectumUp) {
         const double arc = std::stod(words.text);
         EXPECT_GT(arc, before);
         EXPECT_LT(words.at.y, row);
-        EXPECT_EQ(words.at.y, marks.lines[line++].from.y);
+        EXPECT_NEAR(words.at.y, marks.lines[line++].from.y, marks.textHeight);
         before = arc;
         row = words.at.y;
     }
     EXPECT_EQ(line, marks.lines.size());
     EXPECT_LE(before, map.cameras.back().arcMm);
+}
+
+// Half of the colon in a hundredth of the strip.
+TEST(Caption, TheStripsScaleCanBeReadWhereTheMapIsSqueezed) {
+    FlatMap map = tests::FlatTube().map();
+    for (glm::dvec2& place : map.flat) {
+        const double up = place.y / map.height;
+        place.y = map.height * (up < 0.5 ? 0.02 * up : 0.01 + 1.98 * (up - 0.5));
+    }
+    const glm::ivec2 size(300, 900);
+    const pictures::Marks marks = stripCaption(map, size).value();
+    expectReadable(marks, size, "");
+    EXPECT_GT(marks.lines.size(), 3u);
+    EXPECT_EQ(marks.words.size(), marks.lines.size() + 2);  // and the strip's ends
 }
 
 }  // namespace

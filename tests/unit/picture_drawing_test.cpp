@@ -1,7 +1,9 @@
 // Panels side by side, and marks on pictures.
 #include "pictures/drawing.h"
 
+#include <algorithm>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +96,29 @@ TEST(Marks, LeaveAllElseAsItWas) {
                 ASSERT_EQ(now, glm::u8vec3(10, 200, 30)) << x;
             }
         }
+    }
+}
+
+// It takes that room and no more, but for its rim.
+TEST(Marks, TextIsAsWideAsItIsSaidToBe) {
+    const glm::ivec2 size(400, 60);
+    for (const double height : {6.0, 11.4, 24.0}) {
+        const std::string text = "Case.x-7 mm";
+        const double width = textWidth(text, height).value();
+        Image image = blankImage(size);
+        Marks marks;
+        marks.textHeight = height;
+        marks.words = {{text, {20, 20}, {0.0, 0.0}}};
+        ASSERT_TRUE(draw(marks, image));
+        int first = size.x, last = 0;
+        for (int i = 0; i < size.x * size.y; ++i)
+            if (image.rgb[3 * std::size_t(i)] > 0) {
+                first = std::min(first, i % size.x);
+                last = std::max(last, i % size.x);
+            }
+        EXPECT_GE(first, 20 - 2) << height;
+        EXPECT_LE(last, 20 + width + 2) << height;
+        EXPECT_NEAR(last - first, width, 0.1 * width) << height;
     }
 }
 
