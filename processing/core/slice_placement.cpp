@@ -6,22 +6,6 @@
 namespace haustra {
 namespace {
 
-struct Box {
-    glm::dvec3 low, high;
-};
-
-/// Patient-space bounds of the grid's outer faces (half a voxel outside the centres).
-Box boundsMm(const Grid& grid) {
-    Box box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
-        const glm::dvec3 mm = grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5);
-        box.low = glm::min(box.low, mm);
-        box.high = glm::max(box.high, mm);
-    }
-    return box;
-}
-
 struct Axes {
     glm::dvec3 right, down;
 };
@@ -38,6 +22,17 @@ Axes axesOf(View plane) {
 }
 
 }  // namespace
+
+ScanBounds boundsMm(const Grid& grid) {
+    ScanBounds bounds{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, corner >> 2);
+        const glm::dvec3 mm = grid.patientFromVoxelPoint(side * glm::dvec3(grid.size) - 0.5);
+        bounds.low = glm::min(bounds.low, mm);
+        bounds.high = glm::max(bounds.high, mm);
+    }
+    return bounds;
+}
 
 glm::dvec2 SlicePlacement::pixelFromPatient(glm::dvec3 patientMm) const {
     const glm::dvec3 offsetMm = patientMm - topLeftMm;
@@ -61,7 +56,7 @@ Result<SlicePlacement> placeSlice(const SliceView& view, const Grid& grid, int w
     if (width <= 0 || height <= 0)
         return fail(ErrorKind::badInput, "the picture has no pixels", "slice");
 
-    const Box box = boundsMm(grid);
+    const ScanBounds box = boundsMm(grid);
     const auto [right, down] = axesOf(view.plane);
     const glm::dvec3 middle = 0.5 * (box.low + box.high);
     const glm::dvec3 extent = box.high - box.low;

@@ -7,6 +7,17 @@
 
 namespace haustra {
 
+/// Where a scan's voxels reach to along the patient's axes, mm (LPS): a grid that is oblique leaves
+/// corners of this empty.
+struct ScanBounds {
+    glm::dvec3 low, high;
+    bool contains(glm::dvec3 mm) const {
+        return glm::all(glm::lessThanEqual(low, mm)) && glm::all(glm::lessThanEqual(mm, high));
+    }
+};
+/// Of the grid's outer faces, half a voxel outside its voxels' centres.
+ScanBounds boundsMm(const Grid& grid);
+
 /// The centre of pixel (x, y) is topLeftMm + x·rightMm + y·downMm. Right and down are perpendicular
 /// and of one length.
 struct SlicePlacement {

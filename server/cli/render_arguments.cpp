@@ -46,11 +46,12 @@ void addPlaceOptions(CLI::App& command, RenderArguments& my) {
                     "overview, or the point whose nearest place on the wall is in the middle of "
                     "flattened-zoom")
         ->type_name("A");
-    addPoint(command, "--position", my.positionMm,
-             "The point (LPS, mm) of a slice, of oblique or of flattened-zoom, in place of "
-             "--arc-mm. The endoscopic view looks at it from where the flat map registers the "
-             "place of the wall nearest to it with the centerline, turned as flattened-zoom is: "
-             "the cecum up");
+    addPoint(
+        command, "--position", my.positionMm,
+        "The point (LPS, mm) of a slice, in the scan, of oblique, or of flattened-zoom, 100 mm "
+        "from the wall at most, in place of --arc-mm. The endoscopic view looks at it from where "
+        "the flat map registers the place of the wall nearest to it with the centerline, turned as "
+        "flattened-zoom is: the cecum up");
     addText(command, "--flat", "X,Y",
             "The middle of flattened-zoom on the strip, in circumferences: X around the colon, Y "
             "from the rectum; in place of --arc-mm. Or the place of the wall that the endoscopic "

@@ -12,6 +12,7 @@
 #include "core/centerline.h"
 #include "core/flat_lookup.h"
 #include "core/orbit.h"
+#include "core/slice_placement.h"
 #include "core/wall_camera.h"
 #include "gpu/context.h"
 #include "nifti/nifti_file.h"
@@ -72,6 +73,20 @@ render::MarchOptions marchOf(const RenderArguments& arguments, render::MarchOpti
     return march;
 }
 
+/// The nearest to the point of --position. Fails where that is so far that the point means none of
+/// the wall.
+Result<WallPlace> wallNear(glm::dvec3 pointMm, const FlatLookup& lookup) {
+    constexpr double farthestMm = 100.0;
+    const WallPlace place = lookup.nearest(pointMm);
+    const double awayMm = glm::distance(place.positionMm, pointMm);
+    if (awayMm <= farthestMm) return place;
+    return fail(ErrorKind::badInput,
+                fmt::format("the wall nearest to this place is {:.0f} mm away, which is more than "
+                            "{:.0f} mm",
+                            std::ceil(awayMm), farthestMm),
+                "--position " + toText(pointMm));
+}
+
 /// The place of the wall that is given, or the nearest to the point that is.
 Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& centerline,
                             const FlatLookup& lookup) {
@@ -82,9 +97,27 @@ Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& 
             fmt::format("the strip runs from 0 to {:.3f} circumferences", lookup.map().height),
             fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
     }
-    return lookup.nearest(arguments.positionMm.empty()
-                              ? poseAtArc(centerline, *arguments.arcMm).point.positionMm
-                              : arguments.positionMm.front());
+    if (arguments.positionMm.empty())
+        return lookup.nearest(poseAtArc(centerline, *arguments.arcMm).point.positionMm);
+    return wallNear(arguments.positionMm.front(), lookup);
+}
+
+/// A slice at a place beside the scan would be black.
+Result<void> checkSlicePlace(const RenderArguments& arguments, const Grid& grid) {
+    if (!arguments.isSlice() || arguments.positionMm.empty()) return {};
+    // A tenth of a millimetre that is told, rounded inwards, is in the scan, whatever its last bit.
+    constexpr double rounding = 1e-6;
+    ScanBounds scan = boundsMm(grid);
+    scan.low -= rounding, scan.high += rounding;
+    const glm::dvec3 point = arguments.positionMm.front();
+    if (scan.contains(point)) return {};
+    const glm::dvec3 low = glm::ceil(10.0 * scan.low) / 10.0 + 0.0,
+                     high = glm::floor(10.0 * scan.high) / 10.0;
+    return fail(ErrorKind::badInput,
+                fmt::format("this place is outside the scan, which runs from "
+                            "{:.1f},{:.1f},{:.1f} to {:.1f},{:.1f},{:.1f}",
+                            low.x, low.y, low.z, high.x, high.y, high.z),
+                "--position " + toText(point));
 }
 
 /// On the centerline, or turned from it to a place of the wall or a point near one.
@@ -348,12 +381,13 @@ Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {
     const auto products = TRY(readProducts(arguments, source));
     addProducts(notes.provenance, arguments, products, source);
     const CaseScans& scans = products.scans;
+    const Grid grid = scans.ct.grid();
+    TRY(checkSlicePlace(arguments, grid));
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, arguments.threads));
     prepared.flatMap = products.flatMap;
     prepared.wall = products.wall;
     if (!products.centerline.points.empty())
         prepared.path = std::make_shared<const Centerline>(products.centerline);
-    const Grid grid = scans.ct.grid();
     return drawWith(arguments, std::move(prepared), [&](render::CaseRenderer& renderer) {
         const auto window = arguments.window.value_or(WindowLevel{});
         const auto scan = arguments.product == product::cleansed ? Scan::cleansed : Scan::original;
@@ -374,6 +408,7 @@ Result<Image> drawCase(const RenderArguments& arguments, Notes& notes) {
 Result<Image> drawScan(const RenderArguments& arguments, Notes& notes) {
     auto volume = TRY(readInputVolume(arguments.input, arguments.spacingMm, arguments.threads));
     const Grid grid = volume.grid();
+    TRY(checkSlicePlace(arguments, grid));
     WindowLevel window;
     if (arguments.window) {
         window = *arguments.window;

@@ -192,6 +192,13 @@ TEST_F(FlatImage, SaysWhatIsWrong) {
     says(render({"--view", "endoscopic"}), 2, "--flat, --arc-mm or --position");
     says(render({"--position=1,2,3", "--arc-mm", "3"}), 2, "two ways");
     says(render({"--flat", "0.5,99"}), 1, "circumferences");
+    // The wall ends at z = 60.
+    for (const char* view : {"endoscopic", "flattened-zoom"}) {
+        says(render({"--view", view, "--position=0,-12,1060"}), 1,
+             " mm away, which is more than 100 mm");
+        says(render({"--view", view, "--position=0,-12,1060"}), 1, "--position 0,-12,1060");
+        EXPECT_EQ(render({"--view", view, "--position=0,-12,150"}).exitCode, 0) << view;
+    }
     says(run({"render", "scan", "--position=1,2,3", "--out", picture()}), 1, "flatmap");
     says(run({"export", smallCaseName, "flat-image", folder_->path() / "picture.gif"}), 2, ".png");
     says(run({"export", smallCaseName, "ct", folder_->path() / "ct.nii", "--width", "9"}), 2,

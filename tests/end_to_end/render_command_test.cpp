@@ -7,11 +7,14 @@
 #include "store/case_store.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 
 namespace haustra::tests {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// The columns from `left` on.
 Image columns(const Image& image, int left, int width) {
@@ -35,7 +38,10 @@ protected:
         std::vector<std::string> arguments{
             "render", name,    "--store", folder_->path() / "store",  "--size",
             "80x60",  "--out", picture(), "--position=-1.2,9.8,112.0"};
-        if (std::find(more.begin(), more.end(), "--arc-mm") != more.end()) arguments.pop_back();
+        if (std::any_of(more.begin(), more.end(), [](const std::string& text) {
+                return text == "--arc-mm" || text.starts_with("--position");
+            }))
+            arguments.pop_back();
         arguments.insert(arguments.end(), more.begin(), more.end());
         return runProgram("haustra", arguments);
     }
@@ -169,6 +175,25 @@ TEST_F(RenderCommand, ACaptionIsDrawnOnlyWhereItIsAskedFor) {
         const std::size_t changed = differingBytes(plain, marked);
         EXPECT_GT(changed, 100u);
         EXPECT_LT(changed, plain.rgb.size() / 2);
+    }
+}
+
+// From face to face, which is 0.4 mm beyond the voxels' centres, and 0.55 mm along the patient.
+TEST_F(RenderCommand, ASliceOutsideTheScanIsRefused) {
+    for (const char* view : {"axial", "coronal", "sagittal"}) {
+        for (const char* place : {"1,2,3000", "-1.2,9.8,99.4", "-20.5,9.8,112", "-1.2,20,112"}) {
+            fs::remove(picture());
+            const Outcome outcome =
+                run(smallCaseName, {"--view", view, std::string("--position=") + place});
+            EXPECT_EQ(outcome.exitCode, 1) << view << " " << place;
+            EXPECT_EQ(lineCount(outcome.err), 1u) << outcome.err;
+            EXPECT_NE(outcome.err.find(std::string("--position ") + place), std::string::npos)
+                << outcome.err;
+            EXPECT_NE(outcome.err.find("-20.4,-15.4,99.5 to 18.0,19.8,161.0"), std::string::npos)
+                << outcome.err;
+            EXPECT_FALSE(fs::exists(picture()));
+        }
+        drawn(smallCaseName, {"--view", view, "--position=-20.3,-15.3,99.5"});
     }
 }
 
