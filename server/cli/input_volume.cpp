@@ -79,12 +79,16 @@ Result<Volume<std::int16_t>> stacked(const std::vector<fs::path>& slices, glm::d
 
 }  // namespace
 
-Result<Volume<std::int16_t>> readInputVolume(const fs::path& path, glm::dvec3 spacingMm,
-                                             int threads) try {
+Result<Volume<std::int16_t>> readInputVolume(const fs::path& path,
+                                             std::optional<glm::dvec3> spacingMm, int threads) try {
     std::error_code error;
     if (!fs::is_directory(path, error)) return nifti::readNifti<std::int16_t>(path);
     const auto slices = TRY(slicesIn(path));
-    if (!slices.empty()) return stacked(slices, spacingMm);
+    if (!slices.empty()) return stacked(slices, spacingMm.value_or(glm::dvec3(1.0)));
+    if (spacingMm)
+        return fail(ErrorKind::badInput,
+                    "--spacing is for a folder of PNG or TIFF slices, and this one has none",
+                    path.string());
     dicom::ImportOptions options;
     options.threads = threads;
     auto series = TRY(dicom::importSeries(path, options));

@@ -80,8 +80,8 @@ void addCameraOptions(CLI::App& command, RenderArguments& my) {
              "The point it looks at; the scan's middle. Of oblique with --position: a point "
              "straight before the slice");
     addPoint(command, "--up", my.up,
-             "The direction that is up in the picture; the patient's head, or the front where the "
-             "camera looks along the patient");
+             "Of camera and oblique, the direction that is up in the picture; the patient's head, "
+             "or the front where it looks along the patient");
     command
         .add_option("--azimuth", my.azimuthDegrees,
                     "Of a camera outside, and of the overview: from the patient's front (0), left "
@@ -252,6 +252,74 @@ void addPictureOptions(CLI::App& command, RenderArguments& my) {
     throw CLI::ValidationError(option, what);
 }
 
+/// As --view calls it.
+std::string nameOf(const RenderArguments& my) {
+    return !my.view.empty() ? my.view : my.isScan() ? camera : toString(my.shown());
+}
+
+using Views = std::vector<std::string>;
+
+/// Of options that would say nothing of other views, those of which they do.
+const std::vector<std::pair<const char*, Views>>& viewsOfOptions() {
+    static const Views slices{"axial", "coronal", "sagittal"},
+        planes{"axial", "coronal", "sagittal", "oblique"}, cameras{"endoscopic", camera},
+        outside{camera, "overview"}, free{camera, "oblique"}, overview{"overview"};
+    static const std::vector<std::pair<const char*, Views>> table{
+        {"--pixels-per-circumference", {"flattened-zoom"}},
+        {"--direction", {"endoscopic", "oblique", "overview"}},
+        {"--eye", {camera}},
+        {"--look", free},
+        {"--up", free},
+        {"--azimuth", outside},
+        {"--elevation", outside},
+        {"--lens", cameras},
+        {"--fov", cameras},
+        {"--height-mm", {"endoscopic", camera, "oblique", "overview"}},
+        {"--mark", overview},
+        {"--no-body", overview},
+        {"--window", planes},
+        {"--zoom", slices}};
+    return table;
+}
+
+/// An option that is given says something of the view that is drawn.
+void checkViews(const CLI::App& command, const RenderArguments& my) {
+    const std::string shown = nameOf(my);
+    for (const auto& [option, views] : viewsOfOptions()) {
+        if (command.count(option) == 0 ||
+            std::find(views.begin(), views.end(), shown) != views.end())
+            continue;
+        std::string names = views.front();
+        for (std::size_t n = 1; n < views.size(); ++n)
+            names += (n + 1 < views.size() ? ", " : " or ") + views[n];
+        wrong(option, "is for --view " + names + ", not " + shown);
+    }
+    if (my.castsRays()) return;
+    for (const char* option : {"--raycaster", "--step", "--gpu-budget"})
+        if (command.count(option) > 0) wrong(option, "a slice casts no rays");
+}
+
+/// Of a folder, what is in it tells when it is read.
+void checkSpacing(const CLI::App& command, const RenderArguments& my) {
+    std::error_code ignored;
+    if (command.count("--spacing") > 0 && (!my.isScan() || fs::is_regular_file(my.input, ignored)))
+        wrong("--spacing", "is for a folder of PNG or TIFF slices");
+}
+
+/// Options that the camera's lens or its place leaves nothing to say.
+void checkCamera(const CLI::App& command, const RenderArguments& my) {
+    if (my.lens == Lens::orthographic && my.fovDegrees)
+        wrong("--fov", "an orthographic lens has none; give --height-mm");
+    if (my.lens != Lens::orthographic && my.heightMm && my.shown() == View::endoscopic)
+        wrong("--height-mm", "of a camera needs --lens orthographic");
+    if (my.fovDegrees && my.lens == Lens::perspective && *my.fovDegrees > 170.0)
+        wrong("--fov", "a perspective sees 170 degrees at most");
+    for (const char* option : {"--azimuth", "--elevation"})
+        if (command.count(option) > 0 && !my.eyeMm.empty())
+            wrong(option, "turns a camera outside, and --eye places another");
+    if (command.count("--direction") > 0 && !my.arcMm) wrong("--direction", "needs --arc-mm");
+}
+
 void checkPlace(const RenderArguments& my) {
     const bool outside = my.view == camera || (my.view.empty() && my.isScan());
     const View view = my.shown();
@@ -260,9 +328,8 @@ void checkPlace(const RenderArguments& my) {
     for (const auto& [name, points] :
          {std::pair("--eye", &my.eyeMm), {"--look", &my.lookMm}, {"--up", &my.up}})
         if (points->size() > 1) wrong(name, "given more than once");
-    if (!my.eyeMm.empty() && !outside) wrong("--eye", "places --view camera");
-    if (!my.lookMm.empty() && my.eyeMm.empty() && view != View::oblique)
-        wrong("--look", "needs --eye");
+    if (!my.lookMm.empty() && (outside ? my.eyeMm : my.positionMm).empty())
+        wrong("--look", outside ? "needs --eye" : "needs --position");
     if (my.flat && (my.isSlice() || view == View::oblique || view == View::overview))
         wrong("--flat", "places flattened-zoom and endoscopic");
     if (view == View::flattened && places > 0)
@@ -272,7 +339,7 @@ void checkPlace(const RenderArguments& my) {
         wrong("--view", "overview takes no place but the reader's, --arc-mm");
     if (view == View::oblique && !my.positionMm.empty() && my.lookMm.empty())
         throw CLI::RequiredError("--look");
-    if (!my.isSlice() && places > 1) wrong("--view", "the place is given in two ways");
+    if (places > 1) wrong("--view", "the place is given in two ways");
     if (places == 0 && !outside && view != View::flattened && view != View::overview)
         throw CLI::RequiredError(my.isSlice() || view == View::oblique
                                      ? "--arc-mm or --position"
@@ -344,15 +411,16 @@ void addRenderOptions(CLI::App& command, RenderArguments& my) {
             [&my](const std::string& text) {
                 const auto numbers = parseNumbers(text, ',', 3);
                 if (!numbers) return false;
-                my.spacingMm = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
-                return my.spacingMm.x > 0.0 && my.spacingMm.y > 0.0 && my.spacingMm.z != 0.0;
+                const glm::dvec3 mm((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+                my.spacingMm = mm;
+                return mm.x > 0.0 && mm.y > 0.0 && mm.z != 0.0;
             })
         ->default_str("1,1,1");
     addPictureOptions(command, my);
     addThreadsOption(command, my.threads);
 }
 
-void checkUsage(const RenderArguments& my) {
+void checkUsage(const CLI::App& command, const RenderArguments& my) {
     const View view = my.shown();
     if (my.isScan()) {
         if (my.view == "endoscopic" || my.isFlattened() || view == View::overview)
@@ -369,27 +437,27 @@ void checkUsage(const RenderArguments& my) {
     } else if (my.store.empty()) {
         throw CLI::RequiredError("--store");
     }
+    checkSpacing(command, my);
+    checkViews(command, my);
+    checkCamera(command, my);
     if (!my.optics.empty() && !my.castsRays())
         wrong("--tf", "a slice shows grey values; give --window");
     if (!my.optics.empty() && !my.labels.empty())
         wrong("--tf", "a colour volume has colours of its own");
+    if (command.count("--raycaster") > 0 && !my.labels.empty())
+        wrong("--raycaster", "a colour volume is drawn in object order");
     if (my.gpuBudgetMiB > 0.0 && my.labels.empty() &&
-        (!my.castsRays() || raycasterEntry(my.raycaster).volume != VolumeOnGpu::cells))
+        raycasterEntry(my.raycaster).volume != VolumeOnGpu::cells)
         wrong("--gpu-budget",
               "only the object-order raycaster has one; give --raycaster "
               "object-order");
     if (!my.isSlice() && my.compare) wrong("--compare", "compares slices; give --view");
-    if (my.lens != Lens::perspective && view != View::endoscopic)
-        wrong("--lens", "is for the endoscopic view and camera");
-    if (my.fovDegrees && my.lens == Lens::perspective && *my.fovDegrees > 170.0)
-        wrong("--fov", "a perspective sees 170 degrees at most");
-    if (!my.marksMm.empty() && view != View::overview) wrong("--mark", "is for the overview");
     if (my.leastProbability && !my.paintsFindings())
         wrong("--least-probability", "needs --paint findings");
     if (my.paintsFindings() && (my.isScan() || !showsWall(view)))
         wrong("--paint", "findings colours a case's views of the wall");
-    if (!my.paint.empty() && !my.paintsFindings() && my.view != "endoscopic" && !my.view.empty())
-        wrong("--paint", "of a file is for the endoscopic view");
+    if (!my.paint.empty() && !my.paintsFindings() && nameOf(my) != "endoscopic")
+        wrong("--paint", "of a file is for --view endoscopic, not " + nameOf(my));
     checkPlace(my);
 }
 

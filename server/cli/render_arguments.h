@@ -53,7 +53,7 @@ struct RenderArguments {
     double zoom = 1.0;
     glm::ivec2 size{512, 512};
     bool caption = false;
-    glm::dvec3 spacingMm{1.0};  ///< of a scan in pictures
+    std::optional<glm::dvec3> spacingMm;  ///< of a scan in pictures; empty: 1,1,1
     int threads = 0;
 
     /// The input is a file or folder: it has a slash, or ends in .nii or .nii.gz.
@@ -69,6 +69,6 @@ struct RenderArguments {
 /// Adds all options to `command`; wrong usage throws CLI's errors when it is parsed, or when
 /// checkUsage is called after that.
 void addRenderOptions(CLI::App& command, RenderArguments& arguments);
-void checkUsage(const RenderArguments& arguments);
+void checkUsage(const CLI::App& command, const RenderArguments& arguments);
 
 }  // namespace haustra::cli

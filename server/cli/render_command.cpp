@@ -491,7 +491,7 @@ Command addRender(CLI::App& program) {
         "slice of the scan in any direction, or the flattened wall. Of a scan from a file: from "
         "outside or anywhere, or a slice.");
     addRenderOptions(*command, *arguments);
-    command->callback([arguments] { checkUsage(*arguments); });
+    command->callback([arguments, command] { checkUsage(*command, *arguments); });
     return {command, [arguments] { return runRender(*arguments); }};
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
 
@@ -195,6 +196,60 @@ TEST_F(RenderCommand, ASliceOutsideTheScanIsRefused) {
         }
         drawn(smallCaseName, {"--view", view, "--position=-20.3,-15.3,99.5"});
     }
+}
+
+// It would be drawn as if the option had not been given.
+TEST_F(RenderCommand, AnOptionOfAnotherViewIsRefused) {
+    const std::map<std::string, std::string> valueOf{{"--pixels-per-circumference", "900"},
+                                                     {"--direction", "retrograde"},
+                                                     {"--eye", "1,2,3"},
+                                                     {"--look", "1,2,3"},
+                                                     {"--up", "0,1,0"},
+                                                     {"--azimuth", "30"},
+                                                     {"--elevation", "30"},
+                                                     {"--lens", "fisheye"},
+                                                     {"--fov", "50"},
+                                                     {"--height-mm", "40"},
+                                                     {"--mark", "1,2,3"},
+                                                     {"--no-body", ""},
+                                                     {"--window", "0,400"},
+                                                     {"--zoom", "4"},
+                                                     {"--raycaster", "native"},
+                                                     {"--step", "0.7"},
+                                                     {"--gpu-budget", "500"},
+                                                     {"--spacing", "1,1,1"}};
+    const auto refuses = [&](std::vector<std::string> arguments,
+                             const std::vector<std::string>& options) {
+        for (const std::string& option : options) {
+            std::vector<std::string> more = arguments;
+            more.push_back(option);
+            if (!valueOf.at(option).empty()) more.push_back(valueOf.at(option));
+            fs::remove(picture());
+            const Outcome outcome = run(smallCaseName, more);
+            EXPECT_EQ(outcome.exitCode, 2) << arguments[1] << " " << option;
+            EXPECT_EQ(outcome.err.find("haustra: " + option + ": "), 0u) << outcome.err;
+            EXPECT_EQ(lineCount(outcome.err), 1u) << outcome.err;
+            EXPECT_FALSE(fs::exists(picture())) << arguments[1] << " " << option;
+        }
+    };
+    refuses({"--arc-mm", "20"},
+            {"--pixels-per-circumference", "--eye", "--look", "--up", "--azimuth", "--elevation",
+             "--height-mm", "--mark", "--no-body", "--window", "--zoom", "--spacing"});
+    refuses({"--arc-mm", "20", "--lens", "orthographic"}, {"--fov"});
+    refuses({"--view", "endoscopic"}, {"--direction"});
+    refuses({"--view", "axial"},
+            {"--pixels-per-circumference", "--direction", "--eye", "--look", "--up", "--azimuth",
+             "--elevation", "--lens", "--fov", "--height-mm", "--mark", "--no-body", "--raycaster",
+             "--step", "--gpu-budget", "--spacing"});
+    refuses({"--view", "oblique", "--arc-mm", "20"},
+            {"--pixels-per-circumference", "--eye", "--look", "--azimuth", "--elevation", "--lens",
+             "--fov", "--mark", "--no-body", "--zoom", "--raycaster", "--step", "--gpu-budget"});
+    refuses({"--view", "flattened-zoom", "--arc-mm", "20"},
+            {"--direction", "--eye", "--look", "--up", "--azimuth", "--elevation", "--lens",
+             "--fov", "--height-mm", "--mark", "--no-body", "--window", "--zoom"});
+    refuses({"--view", "overview", "--arc-mm", "20"},
+            {"--pixels-per-circumference", "--eye", "--look", "--up", "--lens", "--fov", "--window",
+             "--zoom", "--spacing"});
 }
 
 TEST_F(RenderCommand, ComparisonsAreOfSlices) {

@@ -233,6 +233,14 @@ TEST_F(RenderScan, WhatIsWrongIsNamed) {
     expectFails(scan, {"--tf", white, "--raycaster", "magic"}, 2, "--raycaster");
     expectFails(scan, {"--tf", white, "--spacing", "1,0,1"}, 2, "--spacing");
     expectFails("someCase", {}, 2, "--store");
+
+    // What would be passed over.
+    expectFails(scan, {"--tf", white, "--spacing", "1,1,1"}, 2, "--spacing");
+    expectFails(scan, {"--tf", white, "--zoom", "2"}, 2, "--zoom: is for --view axial");
+    expectFails(scan, {"--tf", white, "--paint", white}, 2, "--paint");
+    expectFails(scan, {"--tf", white, "--eye", "0,0,0", "--azimuth", "9"}, 2, "--azimuth");
+    fs::create_directory(at("none"));
+    expectFails(at("none"), {"--tf", white, "--spacing", "1,1,1"}, 1, "--spacing");
 }
 
 /// The wall of the small case's colon: a tube around its path, open at the ends.
