@@ -24,6 +24,12 @@ struct LensModel {
     int coefficients;  ///< of k, from the first; all others are 0
     bool decentring;   ///< p₁ and p₂ too
     bool firstIsOne;   ///< k₁ = 1: the focal lengths in pixels are m_u and m_v, as in OpenCV
+
+    /// The widest nominal field of view, degrees; the narrowest is leastFieldDegrees.
+    double mostFieldDegrees() const {
+        return projection == Projection::perspective ? 179.0 : 360.0;
+    }
+    static constexpr double leastFieldDegrees = 1.0;
 };
 /// kannala-brandt (k₁ and k₂, the source's), kannala-brandt-4, stereographic, equidistance,
 /// equisolid, orthogonal, opencv-fisheye, brown, brown-radial (without decentring).

@@ -536,8 +536,8 @@ Result<Calibration> calibrate(const std::vector<BoardView>& views,
     }
     if (options.start && options.start->projection != options.model->projection)
         return wrong("the lens to begin with is of another projection than the model");
-    const double reach = options.model->projection == Projection::perspective ? 179.0 : 360.0;
-    if (options.fieldDegrees && !(*options.fieldDegrees > 1.0 && *options.fieldDegrees <= reach))
+    if (options.fieldDegrees && !(*options.fieldDegrees >= LensModel::leastFieldDegrees &&
+                                  *options.fieldDegrees <= options.model->mostFieldDegrees()))
         return wrong("the nominal field of view is more than this lens model shows");
     for (const auto& length : {options.pixelsPerMm, options.focalMm})
         if (length && !(*length > 0.0 && std::isfinite(*length)))

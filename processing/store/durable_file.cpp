@@ -77,7 +77,7 @@ Result<void> writeDurably(const std::filesystem::path& folder, const std::string
     const std::filesystem::path temporary =
         folder / (temporaryPrefix + name + "-" + std::to_string(::getpid()));
     TemporaryFile file(temporary, permissions);
-    if (file.descriptor() < 0) return systemError("create", temporary);
+    if (file.descriptor() < 0) return systemError("create", folder / name);
     if (!write(file.descriptor()) || ::fsync(file.descriptor()) != 0)
         return systemError("write", folder / name);
     if (!file.publishAs(folder / name)) return systemError("publish", folder / name);

@@ -286,6 +286,11 @@ void checkUse(const CLI::App& command, const CalibrateArguments& arguments) {
         if (arguments.images.empty()) wrong("IMAGES", "are needed: pictures of the board");
         if (!given("--spacing")) wrong("--spacing", "is needed: mm between the board's points");
         const coverage::LensModel& model = *coverage::findLensModel(arguments.model);
+        if (arguments.fieldDegrees && !(*arguments.fieldDegrees >= model.leastFieldDegrees &&
+                                        *arguments.fieldDegrees <= model.mostFieldDegrees()))
+            wrong("--field", fmt::format("of {} is {:g} to {:g} degrees, not {:g}", arguments.model,
+                                         model.leastFieldDegrees, model.mostFieldDegrees(),
+                                         *arguments.fieldDegrees));
         for (const char* option : {"--focal", "--pixels-per-mm"})
             if (model.firstIsOne && given(option))
                 wrong(option, "is of no use to " + arguments.model + ", whose k1 is 1");
@@ -298,10 +303,11 @@ void checkUse(const CLI::App& command, const CalibrateArguments& arguments) {
                                    (polynomial ? std::string("--lens") : arguments.model) +
                                    ", which has a beginning of its own");
     }
-    for (const fs::path& file : {arguments.residuals, arguments.undistorted})
+    for (const auto& [option, file] : {std::pair("--residuals", arguments.residuals),
+                                       std::pair("--undistorted", arguments.undistorted)})
         if (!file.empty() && !pictures::isPictureFile(file))
-            wrong("PICTURE", "a picture is written as .png, .tif, .exr or .jpg, not as \"" +
-                                 file.filename().string() + "\"");
+            wrong(option, "a picture is written as .png, .tif, .exr or .jpg, not as \"" +
+                              file.filename().string() + "\"");
     const std::string ending = arguments.openCv.extension().string();
     if (!arguments.openCv.empty() && ending != ".xml" && ending != ".yml" && ending != ".yaml" &&
         ending != ".json")

@@ -45,6 +45,7 @@ std::vector<Row> rowsOf(const phantom::LumenScore& score) {
 }
 
 Result<void> runEvaluate(const EvaluateArguments& arguments) {
+    if (!arguments.report.empty()) TRY(checkOutputFile(arguments.report));
     const auto found =
         TRY(store::CaseStore::open(arguments.store, false).and_then([&](const auto& s) {
             return s.openCase(arguments.caseName);

@@ -7,6 +7,7 @@
 #include "store/products.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <CLI/CLI.hpp>
@@ -19,15 +20,17 @@ namespace fs = std::filesystem;
 
 const std::string camera = "camera";  // of View::endoscopic, placed by --eye
 
-/// An option whose text `read` turns into a value; false: it is not `form`.
+/// An option whose text `read` turns into a value. Its answer is empty, or says what the text is
+/// that it should not be.
 CLI::Option* addText(CLI::App& command, const std::string& name, const std::string& form,
-                     const std::string& description, std::function<bool(const std::string&)> read) {
+                     const std::string& description,
+                     std::function<std::string(const std::string&)> read) {
     return command
         .add_option_function<std::string>(
             name,
             [=](const std::string& text) {
-                if (!read(text))
-                    throw CLI::ValidationError(name, "\"" + text + "\" is not " + form);
+                const std::string wrong = read(text);
+                if (!wrong.empty()) throw CLI::ValidationError(name, "\"" + text + "\" " + wrong);
             },
             description)
         ->type_name(form);
@@ -58,8 +61,9 @@ void addPlaceOptions(CLI::App& command, RenderArguments& my) {
             "view looks at, as with --position",
             [&my](const std::string& text) {
                 const auto numbers = parseNumbers(text, ',', 2);
-                if (numbers) my.flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
-                return numbers.has_value();
+                if (!numbers) return "is not X,Y";
+                my.flat = glm::dvec2((*numbers)[0], (*numbers)[1]);
+                return "";
             });
     command
         .add_option("--pixels-per-circumference", my.pixelsPerCircumference,
@@ -145,8 +149,9 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
     addText(command, "--raycaster", "KIND", "What casts the rays: " + raycasterNames(),
             [&my](const std::string& text) {
                 const auto kind = raycasterFromString(text);
-                if (kind) my.raycaster = *kind;
-                return kind.has_value();
+                if (!kind) return "is none of " + raycasterNames();
+                my.raycaster = *kind;
+                return std::string();
             })
         ->default_str(toString(my.raycaster));
     command
@@ -200,9 +205,10 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
             "Grey values of a slice, HU (0,2000; of a scan from a file, all of its values)",
             [&my](const std::string& text) {
                 const auto numbers = parseNumbers(text, ',', 2);
-                if (!numbers || !((*numbers)[1] > 0.0)) return false;
+                if (!numbers) return "is not C,W";
+                if (!((*numbers)[1] > 0.0)) return "has a width, W, that is not over 0";
                 my.window = {(*numbers)[0], (*numbers)[1]};
-                return true;
+                return "";
             });
     command
         .add_option(
@@ -213,20 +219,25 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->capture_default_str();
 }
 
+/// Empty, or what is wrong with it.
+std::string readSize(const std::string& text, glm::ivec2& size) {
+    const auto sides = parseNumbers(text, 'x', 2);
+    if (!sides) return "is not WxH";
+    for (int axis = 0; axis < 2; ++axis) {
+        const double side = (*sides)[std::size_t(axis)];
+        if (!(side >= 1.0 && side <= render::maxPictureSide) || side != std::floor(side))
+            return "is not of whole pixels, 1 to " + std::to_string(render::maxPictureSide) +
+                   " a side";
+        size[axis] = int(side);
+    }
+    return {};
+}
+
 void addPictureOptions(CLI::App& command, RenderArguments& my) {
     addText(command, "--size", "WxH",
             "Pixels, at most " + std::to_string(render::maxPictureSide) +
                 " a side; with --compare, of each of the three",
-            [&my](const std::string& text) {
-                const auto sides = parseNumbers(text, 'x', 2);
-                for (int axis = 0; axis < 2; ++axis) {
-                    const double side = sides ? (*sides)[std::size_t(axis)] : 0.0;
-                    if (!(side >= 1.0 && side <= render::maxPictureSide) || side != int(side))
-                        return false;
-                    my.size[axis] = int(side);
-                }
-                return true;
-            })
+            [&my](const std::string& text) { return readSize(text, my.size); })
         ->default_str("512x512");
     command.add_flag("--caption", my.caption,
                      "Write into the picture what it shows and where; onto parallel views, the "
@@ -410,10 +421,12 @@ void addRenderOptions(CLI::App& command, RenderArguments& my) {
             "slice, by the numbers in the names, is the lowest; with a negative Z, the highest",
             [&my](const std::string& text) {
                 const auto numbers = parseNumbers(text, ',', 3);
-                if (!numbers) return false;
+                if (!numbers) return "is not X,Y,Z";
                 const glm::dvec3 mm((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+                if (!(mm.x > 0.0 && mm.y > 0.0)) return "has an X or Y that is not over 0";
+                if (mm.z == 0.0) return "has a Z of 0";
                 my.spacingMm = mm;
-                return mm.x > 0.0 && mm.y > 0.0 && mm.z != 0.0;
+                return "";
             })
         ->default_str("1,1,1");
     addPictureOptions(command, my);

@@ -92,10 +92,10 @@ Result<WallPlace> wallPlace(const RenderArguments& arguments, const Centerline& 
                             const FlatLookup& lookup) {
     if (arguments.flat) {
         if (const auto place = lookup.at(*arguments.flat)) return *place;
-        return fail(
-            ErrorKind::badInput,
-            fmt::format("the strip runs from 0 to {:.3f} circumferences", lookup.map().height),
-            fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
+        return fail(ErrorKind::badInput,
+                    fmt::format("the strip runs from 0 to {:.3f} circumferences",
+                                std::floor(1000.0 * lookup.map().height) / 1000.0),
+                    fmt::format("--flat {},{}", arguments.flat->x, arguments.flat->y));
     }
     if (arguments.positionMm.empty())
         return lookup.nearest(poseAtArc(centerline, *arguments.arcMm).point.positionMm);
@@ -298,8 +298,10 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
     if (arguments.arcMm) {
         const double length = products.centerline.lengthMm();
         if (!(*arguments.arcMm >= 0.0 && *arguments.arcMm <= length)) {
+            // Rounded down: what is told is on the centerline.
             return fail(ErrorKind::badInput,
-                        fmt::format("the centerline runs from 0 to {:.1f} mm", length),
+                        fmt::format("the centerline runs from 0 to {:.1f} mm",
+                                    std::floor(10.0 * length) / 10.0),
                         fmt::format("--arc-mm {}", *arguments.arcMm));
         }
     }

@@ -152,6 +152,10 @@ TEST_F(Calibrate, WhatFailsIsOneLineAndLeavesNothing) {
     refused(with(boards({"--pixels-per-mm", "15", "--focal", "2"})), 2, "--focal");
     refused(with(boards({"--model", "equisolid", "--nominal", "orthogonal"})), 2, "--nominal");
     refused(with(boards({"--undistorted", at("new.txt")})), 2, "new.txt");
+    refused(with(boards({"--undistorted", at("new.gif")})), 2, "--undistorted");
+    refused(boards({"--residuals", at("new.gif")}), 2, "--residuals");
+    refused(with(boards({"--field", "500"})), 2, "--field");
+    refused(with(boards({"--model", "brown", "--field", "179.5"})), 2, "--field");
     refused(boards({"--out", at("board1.png")}), 2, "board1.png");
     refused(boards({"--out", at("new.json"), "--opencv", at("new.json")}), 2, "new.json");
     refused({"--lens", "olympus-cf-q160l", "--model", "brown", "--out", at("new.json")}, 2,

@@ -222,7 +222,32 @@ TEST_F(PreparedPhantom, APlaceBeyondTheCenterlineIsRefused) {
         EXPECT_NE(outcome.err.find("the centerline runs from 0 to"), std::string::npos)
             << outcome.err;
         EXPECT_FALSE(fs::exists(file("beyond.png")));
+        // What is told can be given.
+        const std::string before = "from 0 to ";
+        const std::size_t last = outcome.err.find(before);
+        ASSERT_NE(last, std::string::npos);
+        const std::string length =
+            std::to_string(std::stod(outcome.err.substr(last + before.size())));
+        const auto end = haustra({"render", "p", "--store", store(), "--arc-mm", length, "--size",
+                                  "8x8", "--out", file("end.png")});
+        EXPECT_EQ(end.exitCode, 0) << end.err;
     }
+}
+
+TEST_F(PreparedPhantom, AResultThatCannotBeWrittenIsNamed) {
+    const fs::path missing = file("no/report.json");
+    const auto report = haustra({"evaluate", "p", "--store", store(), "--truth",
+                                 tests::phantomFolder() / "truth", "--report", missing});
+    EXPECT_EQ(report.exitCode, 1);
+    EXPECT_EQ(report.out, "");  // before the work
+    EXPECT_EQ(report.err.find("haustra: " + missing.string() + ": "), 0u) << report.err;
+
+    const fs::path longest =
+        file(std::string(248, 'x') + ".csv");  // its temporary name is too long
+    const auto table = haustra({"export", "p", "centerline", longest, "--store", store()});
+    EXPECT_EQ(table.exitCode, 1);
+    EXPECT_EQ(table.err.find("haustra: " + longest.string() + ": "), 0u) << table.err;
+    EXPECT_FALSE(fs::exists(longest));
 }
 
 TEST_F(PreparedPhantom, ExportedVolumesEqualTheProducts) {

@@ -1,4 +1,5 @@
 // haustra render on a small store: which scan a picture shows, and the comparison.
+#include "core/raycasters.h"
 #include "end_to_end/run_program.h"
 #include "end_to_end/server_process.h"
 #include "picture_files.h"
@@ -36,9 +37,11 @@ protected:
     static void TearDownTestSuite() { folder_.reset(); }
 
     static Outcome run(const std::string& name, std::vector<std::string> more) {
-        std::vector<std::string> arguments{
-            "render", name,    "--store", folder_->path() / "store",  "--size",
-            "80x60",  "--out", picture(), "--position=-1.2,9.8,112.0"};
+        const std::string store = folder_->path() / "store", place = "--position=-1.2,9.8,112.0";
+        std::vector<std::string> arguments{"render", name,      "--store", store,
+                                           "--out",  picture(), place};
+        if (std::find(more.begin(), more.end(), "--size") == more.end())
+            more.insert(more.end(), {"--size", "80x60"});
         if (std::any_of(more.begin(), more.end(), [](const std::string& text) {
                 return text == "--arc-mm" || text.starts_with("--position");
             }))
@@ -196,6 +199,27 @@ TEST_F(RenderCommand, ASliceOutsideTheScanIsRefused) {
         }
         drawn(smallCaseName, {"--view", view, "--position=-20.3,-15.3,99.5"});
     }
+}
+
+TEST_F(RenderCommand, WhatIsWrongWithAnOptionIsSaid) {
+    const auto says = [](const std::vector<std::string>& more, const std::string& line) {
+        const Outcome outcome = run(smallCaseName, more);
+        EXPECT_EQ(outcome.exitCode, 2);
+        EXPECT_EQ(outcome.err, "haustra: " + line + " (see haustra render --help)\n");
+    };
+    const std::string sides = " is not of whole pixels, 1 to 2048 a side";
+    says({"--size", "4000x700"}, "--size: \"4000x700\"" + sides);
+    says({"--size", "0x7"}, "--size: \"0x7\"" + sides);
+    says({"--size", "7.5x7"}, "--size: \"7.5x7\"" + sides);
+    says({"--size", "7"}, "--size: \"7\" is not WxH");
+    says({"--window", "0,0"}, "--window: \"0,0\" has a width, W, that is not over 0");
+    says({"--window", "40"}, "--window: \"40\" is not C,W");
+    says({"--spacing", "0,1,1"}, "--spacing: \"0,1,1\" has an X or Y that is not over 0");
+    says({"--spacing", "1,1,0"}, "--spacing: \"1,1,0\" has a Z of 0");
+    says({"--raycaster", "warp"}, "--raycaster: \"warp\" is none of " + raycasterNames());
+    says({"--view", "axial", "--raycaster", "object-order", "--gpu-budget", "500"},
+         "--raycaster: a slice casts no rays");
+    says({"--view", "axial", "--gpu-budget", "500"}, "--gpu-budget: a slice casts no rays");
 }
 
 // It would be drawn as if the option had not been given.
