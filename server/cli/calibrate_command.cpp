@@ -232,6 +232,17 @@ Result<coverage::Colonoscope> calibrateOn(const CalibrateArguments& arguments,
     return scope;
 }
 
+/// Its picture size and the picture's are one: places in it are told in pixels.
+Result<void> checkFits(const coverage::Colonoscope& scope, const Picture& picture) {
+    const glm::ivec2 size(picture.image.width, picture.image.height);
+    if (size == scope.pictureSize) return {};
+    return fail(ErrorKind::badInput,
+                fmt::format("the picture is of {}x{} pixels, and the lens {} is of pictures of "
+                            "{}x{}",
+                            size.x, size.y, scope.name, scope.pictureSize.x, scope.pictureSize.y),
+                picture.file.string());
+}
+
 Result<void> runCalibrate(const CalibrateArguments& arguments) {
     for (const fs::path& file :
          {arguments.out, arguments.openCv, arguments.residuals, arguments.undistorted})
@@ -244,6 +255,7 @@ Result<void> runCalibrate(const CalibrateArguments& arguments) {
         scope = TRY(calibrateOn(arguments, pictures, lensText, residuals));
     } else {
         scope = TRY(coverage::readColonoscope(arguments.lens));
+        if (!pictures.empty()) TRY(checkFits(scope, pictures.front()));
         fmt::print("{}\n", scope.name);
         tellLens(scope.lens, nullptr);
         lensText = coverage::lensText(scope);
@@ -432,7 +444,8 @@ Command addCalibrate(CLI::App& program) {
         ->type_name("FILE.png");
     command
         ->add_option("--undistorted", arguments->undistorted,
-                     "Write the first picture as a pinhole camera would have taken it")
+                     "Write the first picture as a pinhole camera would have taken it; of a --lens "
+                     "that is known, it is of that lens's size")
         ->type_name("FILE.png");
     command->callback([arguments, command] {
         checkUse(*command, *arguments);

@@ -181,8 +181,9 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->check(numberRange(0.05, 4.0));
     command
         .add_option("--paint", my.paint,
-                    "A picture of the whole strip, as flat-image is without a seam margin, that "
-                    "colours the endoscopic view's wall; or findings: the case's own, in all views "
+                    "A picture of the whole strip, of its shape, as flat-image is without a seam "
+                    "margin, that colours the endoscopic view's wall; or findings: the case's own, "
+                    "in all views "
                     "of the wall")
         ->type_name("FILE.png|.tif|findings")
         ->check([](const std::string& text) {

@@ -8,13 +8,34 @@
 #include "render/wall/strip_painter.h"
 #include "store/products.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
+#include <fmt/format.h>
+
 namespace haustra::cli {
+
+namespace {
+
+/// `file` is of the strip's shape, to a hundredth or a pixel: another one would be stretched.
+Result<void> checkShape(const std::filesystem::path& file, glm::ivec2 size, double height) {
+    const double rows = height * size.x;
+    if (std::abs(size.y - rows) <= std::max(1.0, 0.01 * rows)) return {};
+    return fail(
+        ErrorKind::badInput,
+        fmt::format("the picture is of {}x{} pixels, and a picture of this strip, without a "
+                    "seam margin, of {}x{:.0f}",
+                    size.x, size.y, size.x, std::max(1.0, std::round(rows))),
+        file.string());
+}
+
+}  // namespace
 
 Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesystem::path& file,
                                                                double height) {
     auto picture = TRY(pictures::readColorPicture(file, render::maxPaintSide));
+    TRY(checkShape(file, picture.size, height));
     auto paint = std::make_shared<render::WallPaint>();
     paint->size = picture.size;
     paint->pixels = std::move(picture.pixels);

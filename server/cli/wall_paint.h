@@ -12,7 +12,8 @@
 
 namespace haustra::cli {
 
-/// A picture of the strip, `height` circumferences long (pictures::readColorPicture).
+/// A picture of the strip, `height` circumferences long (pictures::readColorPicture). Fails naming
+/// the file where it is of another shape than the strip, too.
 Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesystem::path& file,
                                                                double height);
 

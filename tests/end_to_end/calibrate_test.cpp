@@ -141,6 +141,13 @@ TEST_F(Calibrate, WhatFailsIsOneLineAndLeavesNothing) {
     refused(with(boards({"--model", "equisolid", "--opencv", at("new.yml")})), 1, "OpenCV");
     refused(boards({"--out", at("no/new.json")}), 1, at("no/new.json"));
 
+    const Arguments other{"--lens", "olympus-cf-q160l", "--undistorted", at("new.png"),
+                          "--out",  at("new.json")};
+    Arguments misfit{at("board0.png")};
+    misfit.insert(misfit.end(), other.begin(), other.end());
+    refused(misfit, 1, at("board0.png") + ": the picture is of 315x264 pixels");
+    refused(misfit, 1, "525x440");
+
     refused(with({board, dots, "--spacing", "5"}), 2, "IMAGES");
     refused(with({at("board0.png"), "--spacing", "5"}), 2, "--board");
     refused(with({at("board0.png"), board, dots}), 2, "--spacing");

@@ -176,6 +176,22 @@ TEST_F(FlatImage, AStripThatItsFormatCannotHoldIsRefusedBeforeItIsDrawn) {
         EXPECT_NE(file.path().stem(), "long") << file.path();
 }
 
+TEST_F(FlatImage, PaintsTheWallUnlessItHasAMargin) {
+    const std::string paint = folder_->path() / "paint.png";
+    const auto exportPaint = [&](const char* margin) {
+        const Outcome outcome = run({"export", smallCaseName, "flat-image", paint, "--width", "77",
+                                     "--seam-margin", margin});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    };
+    exportPaint("0");
+    const Outcome painted = render({"--arc-mm", "20", "--paint", paint});
+    EXPECT_EQ(painted.exitCode, 0) << painted.err;
+    exportPaint("0.1");
+    const Outcome refused = render({"--arc-mm", "20", "--paint", paint});
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_NE(refused.err.find("haustra: " + paint + ": "), std::string::npos) << refused.err;
+}
+
 TEST_F(FlatImage, SaysWhatIsWrong) {
     const auto says = [](const Outcome& outcome, int exitCode, const char* words) {
         EXPECT_EQ(outcome.exitCode, exitCode) << words;

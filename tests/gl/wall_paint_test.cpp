@@ -281,6 +281,29 @@ TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) 
     EXPECT_FALSE(cli::paintFindings(made, map, {}));
 }
 
+// A pixel of rounding, or a hundredth, is no other shape.
+TEST(WallPaintFile, IsOfTheStripsShape) {
+    const tests::TemporaryFolder folder;
+    const auto file = folder / "paint.png";
+    for (const auto& [size, fits] : {std::pair(glm::ivec2(100, 1700), true),
+                                     {glm::ivec2(100, 1716), true},
+                                     {glm::ivec2(100, 1684), true},
+                                     {glm::ivec2(100, 1720), false},
+                                     {glm::ivec2(100, 1680), false},
+                                     {glm::ivec2(120, 1700), false},
+                                     {glm::ivec2(1, 17), true},
+                                     {glm::ivec2(3, 52), true},
+                                     {glm::ivec2(64, 64), false}}) {
+        ASSERT_TRUE(pictures::writePicture(file, blankImage(size), {}));
+        const auto paint = cli::readWallPaint(file, 17.0);
+        EXPECT_EQ(bool(paint), fits) << size.x << "x" << size.y;
+        if (paint) continue;
+        EXPECT_EQ(paint.error().place, file.string());
+        const std::string own = std::to_string(size.x) + "x" + std::to_string(17 * size.x);
+        EXPECT_NE(paint.error().message.find(own), std::string::npos) << paint.error().message;
+    }
+}
+
 TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {
     const tests::TemporaryFolder folder;
     const auto file = folder / "paint.png";
@@ -288,15 +311,15 @@ TEST(WallPaintFile, IsAPictureOfTheStripWithTheCecumUp) {
     picture.rgb[0] = 255;          // the top left pixel is red
     picture.rgb[3 * 7 + 1] = 255;  // the bottom right one green
     ASSERT_TRUE(pictures::writePicture(file, picture, {}));
-    const auto paint = cli::readWallPaint(file, 3.0);
+    const auto paint = cli::readWallPaint(file, 0.5);
     std::filesystem::resize_file(file, 40);
-    const auto broken = cli::readWallPaint(file, 3.0);
+    const auto broken = cli::readWallPaint(file, 0.5);
     ASSERT_TRUE(paint);
-    EXPECT_EQ((*paint)->at({0.99, 2.9}), glm::u8vec4(255, 0, 0, 255));
-    EXPECT_EQ((*paint)->at({-0.01, 1.6}), glm::u8vec4(255, 0, 0, 255));
+    EXPECT_EQ((*paint)->at({0.99, 0.48}), glm::u8vec4(255, 0, 0, 255));
+    EXPECT_EQ((*paint)->at({-0.01, 0.27}), glm::u8vec4(255, 0, 0, 255));
     EXPECT_EQ((*paint)->at({0.01, 0.0}), glm::u8vec4(0, 255, 0, 255));
-    EXPECT_EQ((*paint)->at({0.5, 1.0}), glm::u8vec4(0, 0, 0, 255));
-    EXPECT_EQ((*paint)->at({0.5, 3.1}), glm::u8vec4(0));
+    EXPECT_EQ((*paint)->at({0.5, 0.16}), glm::u8vec4(0, 0, 0, 255));
+    EXPECT_EQ((*paint)->at({0.5, 0.52}), glm::u8vec4(0));
     EXPECT_FALSE(broken);
 }
 
