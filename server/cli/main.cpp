@@ -3,6 +3,7 @@
 #include "core/version.h"
 #include "store/lost_pages.h"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -68,6 +69,9 @@ int runProgram(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     haustra::store::surviveLostPages();
+    // A file that would outgrow what it may have is a write that fails: it is named, and taken
+    // back.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return runProgram(argc, argv);
     } catch (const std::bad_alloc&) {

@@ -6,6 +6,7 @@
 #include "store/lost_pages.h"
 
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -165,6 +166,10 @@ int runProgram(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     haustra::store::surviveLostPages();
+    // Whoever took the log may end before the server does, and a file may reach the greatest size
+    // that it may have: the line, or the record, is lost, not the readers' sessions.
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return runProgram(argc, argv);
     } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-// What is left where a long picture is cut short.
+// What is left where writing a file is cut short.
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
 
@@ -36,6 +36,26 @@ TEST(Interruption, TakesBackAStripThatIsHalfWritten) {
         EXPECT_TRUE(begun);
         EXPECT_EQ(outcome.signal, signal) << outcome.err;
         EXPECT_EQ(filesIn(pictures), 0u);
+    }
+}
+
+// Past the greatest size that the shell lets a file have.
+TEST(Interruption, TakesBackWhatOutgrowsItsBound) {
+    const TemporaryFolder folder;
+    makeFlatStore(folder.path() / "store", FlatTube());
+    const fs::path pictures = folder.path() / "pictures";
+    fs::create_directory(pictures);
+    for (const auto& [product, name] : {std::pair{"flat-image", "strip.png"}, {"ct", "ct.nii"}}) {
+        const fs::path file = pictures / name;
+        const Outcome outcome = runProgram(
+            "/bin/sh",
+            {"-c", R"(ulimit -f 8; exec "$0" export "$1" "$2" "$3" --store "$4")",
+             programPath("haustra"), smallCaseName, product, file, folder.path() / "store"});
+        EXPECT_EQ(outcome.signal, 0) << product;
+        EXPECT_EQ(outcome.exitCode, 1) << product;
+        EXPECT_NE(outcome.err.find("haustra: " + file.string() + ": "), std::string::npos)
+            << outcome.err;
+        EXPECT_EQ(filesIn(pictures), 0u) << product;
     }
 }
 

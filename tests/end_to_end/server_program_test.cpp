@@ -7,6 +7,7 @@
 #include <asio/io_context.hpp>
 #include <asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace haustra::tests {
 namespace {
@@ -62,6 +63,38 @@ TEST(Server, WhoSaysNothingMakesRoomForWhoDoes) {
     asio::error_code error;
     silent.back().read_some(asio::buffer(&byte, 1), error);
     EXPECT_EQ(error, asio::error::would_block);
+}
+
+// As behind a pipe to a program that ends, or a journal that starts anew.
+TEST(Server, GoesOnWhereNobodyTakesItsLogAnyMore) {
+    const TemporaryFolder folder;
+    makeSmallStore(folder.path());
+    const std::string log = folder.path() / "log", port = folder.path() / "port";
+    ASSERT_EQ(::mkfifo(log.c_str(), 0600), 0);
+    const Outcome outcome =
+        runProgram("/bin/sh",
+                   {"-c", R"(exec "$0" --store "$1" --listen 127.0.0.1:0 --port-file "$2" 2> "$3")",
+                    programPath("haustra-server"), folder.path(), port, log},
+                   [&](pid_t server) {
+                       const int reader = ::open(log.c_str(), O_RDONLY | O_CLOEXEC);
+                       std::uint16_t number = 0;
+                       for (int n = 0; n < 6000 && number == 0; ++n) {
+                           std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                           std::ifstream(port) >> number;
+                       }
+                       ::close(reader);
+                       for (int n = 0; n < 3 && number != 0; ++n) {
+                           TestClient client(number);  // its coming and going is logged
+                           const auto welcome = client.hello();
+                           EXPECT_TRUE(welcome && welcome->has_welcome());
+                           const auto opened = client.openCase(smallCaseName);
+                           EXPECT_TRUE(opened && opened->has_case_opened());
+                       }
+                       EXPECT_NE(number, 0);
+                       ::kill(server, SIGTERM);
+                   });
+    EXPECT_EQ(outcome.signal, 0);
+    EXPECT_EQ(outcome.exitCode, 0);
 }
 
 TEST(Server, WrongUsageAndFailureHaveTheirExitCodes) {
