@@ -102,7 +102,7 @@ void SeenLedger::loaded(Result<void> read) {
     if (!read) {
         spdlog::error("what a reader has seen is not kept: {}", read.error().message);
         recorded_ = false;
-        news_.tell({0.0, 0, read.error()});
+        news_.tell({0.0, 0, false, read.error()});
     }
     for (const auto& waiting : std::exchange(whenLoaded_, {}))
         waiting(true);
@@ -195,13 +195,13 @@ void SeenLedger::wrote(std::uint64_t step, Result<double> share) {
     writing_ = false;
     if (share) {
         told_ = std::max(told_, step);
-        news_.tell({*share, told_, std::nullopt});
+        news_.tell({*share, told_, recorded_, std::nullopt});
     } else {
         spdlog::error("what a reader has seen cannot be kept: {}", share.error().message);
         changed_ = true;
         nextWrite_ = std::chrono::steady_clock::now() + ledgerAgainAfter;
         if (share.error().kind != ErrorKind::io) recorded_ = false;  // to try again is of no use
-        news_.tell({0.0, 0, share.error()});
+        news_.tell({0.0, 0, recorded_, share.error()});
     }
     writeSoon();
 }

@@ -123,6 +123,7 @@ public:
     struct Told {
         double share;
         std::uint64_t step;  ///< up to which all is taken in and, where `recorded`, on the disk
+        bool recorded;       ///< as isRecorded() tells then
         std::optional<Error> error;  ///< why it is not kept, or not yet
     };
     News<Told>& news() { return news_; }

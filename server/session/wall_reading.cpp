@@ -159,15 +159,22 @@ void WallReading::setLedger(std::shared_ptr<SeenLedger> ledger) {
 }
 
 void WallReading::shown(std::vector<ShownPicture> pictures, std::uint64_t number) {
-    steps_.push_back({ledger_, ledger_->take(std::move(pictures)), number});
+    const std::uint64_t step = ledger_->take(std::move(pictures));
+    keeps_ &= ledger_->isRecorded();
+    if (keeps_) steps_.push_back({ledger_, step, number});
 }
 
 void WallReading::heard(const SeenLedger& of, const SeenLedger::Told& told) {
+    const auto first = std::ranges::find_if(
+        steps_, [&](const Step& step) { return step.of.get() == &of && !step.isKept; });
+    const bool isOwn = &of == ledger_.get(), waits = first != steps_.end();
+    if (waits && !told.recorded) {
+        steps_.erase(first, steps_.end());
+        keeps_ = false;
+    }
     if (told.error) {
         // A former ledger's too, as long as something of it has not been told as kept.
-        const bool waits = std::ranges::any_of(
-            steps_, [&](const Step& step) { return step.of.get() == &of && !step.isKept; });
-        if (waits || &of == ledger_.get()) outlet_.unkept(*told.error);
+        if (isOwn || waits) outlet_.unkept(*told.error);
         return;
     }
     for (Step& step : steps_)
@@ -176,7 +183,7 @@ void WallReading::heard(const SeenLedger& of, const SeenLedger::Told& told) {
     const std::uint64_t before = kept_;
     for (; !steps_.empty() && steps_.front().isKept; steps_.pop_front())
         kept_ = steps_.front().number;
-    if (&of == ledger_.get()) {
+    if (isOwn) {
         outlet_.seen(told.share, kept_);
         if (choice_.unseen) repaint();
     } else if (kept_ != before) {

@@ -59,7 +59,8 @@ public:
     /// Pictures have been on the reader's screen; `number`: of the TellShown that said so, which
     /// grows.
     void shown(std::vector<ShownPicture> pictures, std::uint64_t number);
-    /// Up to which TellShown all is taken in and kept.
+    /// Up to which TellShown all is taken in and kept. Once something has gone to a ledger that is
+    /// not recorded, it grows no more: it would say so of that, too.
     std::uint64_t kept() const { return kept_; }
     /// Nothing has been seen: `told` as of SeenLedger::forget.
     void forget(std::function<void(Result<double> share)> told);
@@ -109,6 +110,7 @@ private:
     };
     std::deque<Step> steps_;  // not told as kept yet, in the order of their numbers
     std::uint64_t kept_ = 0;
+    bool keeps_ = true;  // all that was told until now is kept, or is going to be
 };
 
 }  // namespace haustra::session

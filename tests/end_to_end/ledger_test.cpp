@@ -4,6 +4,8 @@
 #include "core/triangle_tree.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/server_test_client.h"
+#include "protocol/limits.h"
+#include "records/seen_walls.h"
 #include "script/script_player.h"
 
 #include <sstream>
@@ -425,8 +427,9 @@ TEST(LedgerKill, WhatWasToldToBeKeptSurvives) {
 
 class LedgerWords : public FlatServer {
 protected:
-    std::unique_ptr<TestClient> opened(const std::string& reader = "words") {
-        auto client = std::make_unique<TestClient>(server_->port());
+    static std::unique_ptr<TestClient> opened(const std::string& reader = "words",
+                                              std::uint16_t port = server_->port()) {
+        auto client = std::make_unique<TestClient>(port);
         protocol::ClientMessage hello;
         hello.mutable_hello()->set_protocol_version(protocol::protocolVersion);
         for (const char* name : {"jpeg", "lossless", "ledger"})
@@ -449,14 +452,40 @@ protected:
         one->set_ms(ms);
         return message;
     }
-    static double share(TestClient& client) {
+    /// The first answer that is such a one, passing over others.
+    template <class Is>
+    static protocol::ServerMessage awaited(TestClient& client, const Is& is) {
+        for (auto answer = client.answer(); answer; answer = client.answer())
+            if (is(*answer)) return *answer;
+        throw std::runtime_error("the server did not answer");
+    }
+    static protocol::WallSeen seen(TestClient& client) {
         protocol::ClientMessage ask;
         ask.mutable_ask_seen()->set_request(77);
         client.send(ask);
-        for (auto answer = client.answer(); answer; answer = client.answer())
-            if (answer->has_wall_seen() && answer->wall_seen().request() == 77)
-                return answer->wall_seen().share();
-        return -1.0;
+        return awaited(client,
+                       [](const auto& answer) {
+                           return answer.has_wall_seen() && answer.wall_seen().request() == 77;
+                       })
+            .wall_seen();
+    }
+    static double share(TestClient& client) { return seen(client).share(); }
+    /// The number of an endoscopic picture at so many mm along the tube, which has been sent.
+    static std::uint32_t pictureAt(TestClient& client, double mm) {
+        client.viewport(std::uint64_t(2.0 * mm), 0, protocol::ENDOSCOPIC, 96, 96);
+        client.camera(std::uint64_t(2.0 * mm) + 1, 0, {0, 0, mm}, false);
+        for (auto picture = client.picture(); picture; picture = client.picture())
+            if (picture->header.sequence == std::uint64_t(2.0 * mm) + 1)
+                return picture->header.picture;
+        throw std::runtime_error("there is no picture");
+    }
+    static std::string wallOf(TestClient& client) {
+        protocol::ClientMessage ask;
+        ask.mutable_ask_ledger()->set_request(78);
+        client.send(ask);
+        return awaited(client, [](const auto& answer) { return answer.has_ledger(); })
+            .ledger()
+            .wall();
     }
 };
 
@@ -510,6 +539,43 @@ TEST_F(LedgerWords, OnlyWhatHasBeenSentCanHaveBeenOnScreen) {
         EXPECT_TRUE(refused(list)) << least;
     }
     EXPECT_EQ(share(*client), after);
+}
+
+// kept() is of a number and all before it.
+TEST_F(LedgerWords, WhatHasNoRoomIsNeverToldAsKept) {
+    const TemporaryFolder folder;
+    makeFlatStore(folder.path(), tube());
+    const ServerProcess server(folder.path());
+    auto client = opened("latecomer", server.port());
+    ASSERT_TRUE(client);
+    const std::string wall = wallOf(*client);
+    std::vector<records::Ledger> others;
+    for (int n = 0; n < protocol::maxWallLedgers; ++n)
+        others.push_back({{"reader " + std::to_string(n), wall, {}}, "a case", "a scan", {1}});
+    ASSERT_TRUE(records::SeenStore::open(folder.path() / "records.sqlite3")->keep(others));
+
+    const std::uint32_t picture = pictureAt(*client, 10.0);
+    client->send(shown(1, picture, 1000));
+    const auto refused = awaited(*client, [](const auto& answer) { return answer.has_error(); });
+    EXPECT_EQ(refused.error().code(), protocol::ErrorReport::BAD_VALUE);
+    client->send(shown(2, picture, 1000));
+    const auto taken = awaited(*client, [](const auto& answer) {
+        return answer.has_wall_seen() && answer.wall_seen().request() == 0;
+    });
+    EXPECT_FALSE(taken.wall_seen().recorded());
+    EXPECT_EQ(taken.wall_seen().kept(), 0u);
+    // By other limits nothing has been seen yet that would have to be kept.
+    protocol::ClientMessage limits;
+    limits.mutable_set_seen_limits()->set_request(5);
+    limits.mutable_set_seen_limits()->mutable_limits()->set_pixels_per_mm(50.0);
+    client->send(limits);
+    client->send(shown(3, picture, 1));
+    const auto told = awaited(*client, [](const auto& answer) {
+        return answer.has_wall_seen() && answer.wall_seen().request() == 0 &&
+               answer.wall_seen().limits().pixels_per_mm() == 50.0;
+    });
+    EXPECT_TRUE(told.wall_seen().recorded());
+    EXPECT_EQ(told.wall_seen().kept(), 0u);
 }
 
 TEST_F(LedgerWords, AReadersNameHasItsBounds) {
