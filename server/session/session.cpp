@@ -57,6 +57,7 @@ std::shared_ptr<Session> Session::create(SessionId id, asio::any_io_executor io,
     };
     self->pictures_ = std::make_shared<PictureStream>(id, io, services.renderer, services.encoders,
                                                       services.presets, std::move(outlet));
+    self->makeKeptShown();
     services.bookmarks.listen(weak, [weak](const BookmarkNews& news) {
         if (const auto session = weak.lock()) session->heard(news);
     });
@@ -145,6 +146,7 @@ void Session::disconnected() {
     state_ = State::ended;
     pictures_->stop();
     reading_.reset();
+    kept_.reset();
     case_.reset();
     counted_.reset();
     questions_.clear();
@@ -239,6 +241,7 @@ void Session::leaveCase() {
     case_.reset();
     counted_.reset();
     reading_.reset();
+    kept_->caseLeft();
     detection_ = {};
     pictures_->setCase(nullptr);
 }
@@ -312,7 +315,7 @@ void Session::makeReading() {
     outlet.painted = [weak] {
         if (const auto session = weak.lock()) session->pictures_->repaint();
     };
-    outlet.seen = [weak](double share, std::uint64_t) {
+    outlet.seen = [weak](double share) {
         if (const auto session = weak.lock()) session->heardSeen(share);
     };
     outlet.unkept = [weak](const Error& error) {
@@ -322,11 +325,29 @@ void Session::makeReading() {
         if (const auto session = weak.lock()) session->broken(what);
     };
     ++readings_;
-    reading_ = std::make_shared<WallReading>(io_, services_.painting, case_, std::move(outlet));
+    reading_ =
+        std::make_shared<WallReading>(io_, services_.painting, case_, kept_, std::move(outlet));
     reading_->setLedger(services_.ledgers.of(reader_, case_, seenLimits_));
     reading_->choose({});
     pictures_->setReading(reading_);
     toldShare_ = 0.0;
+}
+
+void Session::makeKeptShown() {
+    const std::weak_ptr<Session> weak = weak_from_this();
+    KeptShown::Outlet outlet;
+    outlet.rose = [weak] {
+        const auto session = weak.lock();
+        if (!session || !session->reading_) return;
+        session->reading_->ledger().ask([weak](Result<double> share) {
+            const auto self = weak.lock();
+            if (self && share) self->heardSeen(*share);
+        });
+    };
+    outlet.notWritten = [weak](const Error& error) {
+        if (const auto session = weak.lock()) session->report(error);
+    };
+    kept_ = std::make_shared<KeptShown>(std::move(outlet));
 }
 
 void Session::handle(const protocol::SetWallPaint& message) {
@@ -456,7 +477,7 @@ void Session::tellSeen(std::uint64_t request, double share) {
     seen.set_request(request);
     seen.set_share(share);
     seen.set_recorded(ledger.isRecorded());
-    if (ledger.isRecorded()) seen.set_kept(reading_->kept());
+    if (ledger.isRecorded()) seen.set_kept(kept_->number());
     fill(*seen.mutable_limits(), ledger.limits());
     send(message);
 }

@@ -5,6 +5,7 @@
 #include "session/case_list.h"
 #include "session/case_loader.h"
 #include "session/case_questions.h"
+#include "session/kept_shown.h"
 #include "session/marked_bookmark.h"
 #include "session/news.h"
 #include "session/picture_stream.h"
@@ -112,6 +113,7 @@ private:
     void heard(const BookmarkNews& news);
     void listedBookmarks(std::uint64_t request, Result<std::vector<MarkedBookmark>> bookmarks);
     void makeReading();
+    void makeKeptShown();
     void listedToPaint(std::uint64_t ofReading, Result<std::vector<records::Bookmark>> bookmarks);
     void heardSeen(double share);
     void tellSeen(std::uint64_t request, double share);
@@ -132,6 +134,7 @@ private:
     std::shared_ptr<const void> counted_;  // while a case is open
     std::shared_ptr<PictureStream> pictures_;
     std::shared_ptr<WallReading> reading_;  // where the open case has been flattened
+    std::shared_ptr<KeptShown> kept_;       // of all cases
     std::uint64_t readings_ = 0;
     DetectionChoice detection_;  // of the open case
     std::string reader_;         // whose ledger it is; empty: nobody's

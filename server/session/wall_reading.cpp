@@ -46,11 +46,13 @@ struct WallReading::Work {
 };
 
 WallReading::WallReading(asio::any_io_executor io, PaintThread& painting,
-                         std::shared_ptr<const OpenCase> of, Outlet outlet)
+                         std::shared_ptr<const OpenCase> of, std::shared_ptr<KeptShown> kept,
+                         Outlet outlet)
     : io_(std::move(io)),
       painting_(painting),
       work_(std::make_shared<Work>(Work{std::move(of), {}, {}, 0.0})),
-      outlet_(std::move(outlet)) {}
+      outlet_(std::move(outlet)),
+      kept_(std::move(kept)) {}
 
 // ---- paint --------------------------------------------------------------------------------------
 
@@ -153,45 +155,22 @@ void WallReading::painted(std::uint64_t number, const DetectionChoice& detection
 
 void WallReading::setLedger(std::shared_ptr<SeenLedger> ledger) {
     ledger_ = std::move(ledger);
-    ledger_->news().listen(weak_from_this(),
-                           [this, of = ledger_.get()](const auto& told) { heard(*of, told); });
+    kept_->read(*ledger_);
+    // A former one lives on until it is written.
+    ledger_->news().listen(weak_from_this(), [this, of = ledger_.get()](const auto& told) {
+        if (of == ledger_.get()) heard(told);
+    });
     if (choice_.unseen) repaint();
 }
 
 void WallReading::shown(std::vector<ShownPicture> pictures, std::uint64_t number) {
-    const std::uint64_t step = ledger_->take(std::move(pictures));
-    keeps_ &= ledger_->isRecorded();
-    if (keeps_) steps_.push_back({ledger_, step, number});
+    kept_->given(ledger_, ledger_->take(std::move(pictures)), number);
 }
 
-void WallReading::heard(const SeenLedger& of, const SeenLedger::Told& told) {
-    const auto first = std::ranges::find_if(
-        steps_, [&](const Step& step) { return step.of.get() == &of && !step.isKept; });
-    const bool isOwn = &of == ledger_.get(), waits = first != steps_.end();
-    if (waits && !told.recorded) {
-        steps_.erase(first, steps_.end());
-        keeps_ = false;
-    }
-    if (told.error) {
-        // A former ledger's too, as long as something of it has not been told as kept.
-        if (isOwn || waits) outlet_.unkept(*told.error);
-        return;
-    }
-    for (Step& step : steps_)
-        step.isKept |= step.of.get() == &of && step.step <= told.step;
-    // In the order in which they were told of, whichever ledger had them.
-    const std::uint64_t before = kept_;
-    for (; !steps_.empty() && steps_.front().isKept; steps_.pop_front())
-        kept_ = steps_.front().number;
-    if (isOwn) {
-        outlet_.seen(told.share, kept_);
-        if (choice_.unseen) repaint();
-    } else if (kept_ != before) {
-        ledger_->ask([weak = weak_from_this()](Result<double> share) {
-            const auto self = weak.lock();
-            if (self && share) self->outlet_.seen(*share, self->kept_);
-        });
-    }
+void WallReading::heard(const SeenLedger::Told& told) {
+    if (told.error) return outlet_.unkept(*told.error);
+    outlet_.seen(told.share);
+    if (choice_.unseen) repaint();
 }
 
 void WallReading::forget(std::function<void(Result<double>)> told) {

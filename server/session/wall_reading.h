@@ -5,12 +5,12 @@
 #include "core/result.h"
 #include "records/bookmarks.h"
 #include "render/scene/picture.h"
+#include "session/kept_shown.h"
 #include "session/open_case.h"
 #include "session/seen_ledger.h"
 #include "session/worker.h"
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -28,14 +28,14 @@ class WallReading : public std::enable_shared_from_this<WallReading> {
 public:
     struct Outlet {
         std::function<void()> painted;  ///< paint() is another
-        /// Of the wall's area, 0…1, and up to which TellShown that is taken in and kept.
-        std::function<void(double share, std::uint64_t kept)> seen;
+        /// Of the wall's area, 0…1. What is kept of it KeptShown knows by then.
+        std::function<void(double share)> seen;
         std::function<void(const Error& error)> unkept;       ///< why it is not kept
         std::function<void(const std::string& what)> broken;  ///< nothing else will come
     };
     /// The case has a wall.
     WallReading(asio::any_io_executor io, PaintThread& painting, std::shared_ptr<const OpenCase> of,
-                Outlet outlet);
+                std::shared_ptr<KeptShown> kept, Outlet outlet);
     /// Before anything else, and whenever the reader has chosen other limits.
     void setLedger(std::shared_ptr<SeenLedger> ledger);
     SeenLedger& ledger() { return *ledger_; }
@@ -59,9 +59,6 @@ public:
     /// Pictures have been on the reader's screen; `number`: of the TellShown that said so, which
     /// grows.
     void shown(std::vector<ShownPicture> pictures, std::uint64_t number);
-    /// Up to which TellShown all is taken in and kept. Once something has gone to a ledger that is
-    /// not recorded, it grows no more: it would say so of that, too.
-    std::uint64_t kept() const { return kept_; }
     /// Nothing has been seen: `told` as of SeenLedger::forget.
     void forget(std::function<void(Result<double> share)> told);
 
@@ -82,7 +79,7 @@ private:
     void repaint();
     void startPainting();
     void painted(std::uint64_t number, const DetectionChoice& detection, Result<Paint> paint);
-    void heard(const SeenLedger& of, const SeenLedger::Told& told);
+    void heard(const SeenLedger::Told& told);
 
     asio::any_io_executor io_;
     PaintThread& painting_;
@@ -102,15 +99,7 @@ private:
     bool isPainting_ = false, paintAgain_ = false;
 
     std::shared_ptr<SeenLedger> ledger_;
-    /// What a ledger was given, and the TellShown that it was of.
-    struct Step {
-        std::shared_ptr<SeenLedger> of;
-        std::uint64_t step, number;
-        bool isKept = false;
-    };
-    std::deque<Step> steps_;  // not told as kept yet, in the order of their numbers
-    std::uint64_t kept_ = 0;
-    bool keeps_ = true;  // all that was told until now is kept, or is going to be
+    std::shared_ptr<KeptShown> kept_;
 };
 
 }  // namespace haustra::session

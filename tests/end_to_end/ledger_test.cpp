@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sqlite3.h>
 
 namespace haustra::tests {
 namespace {
@@ -576,6 +577,49 @@ TEST_F(LedgerWords, WhatHasNoRoomIsNeverToldAsKept) {
     });
     EXPECT_TRUE(told.wall_seen().recorded());
     EXPECT_EQ(told.wall_seen().kept(), 0u);
+}
+
+// The last writing of a case that is left fails: later numbers wait for it, until another case has
+// been left as well.
+TEST_F(LedgerWords, WhatALeftCaseWasToldIsWaitedFor) {
+    for (const bool leavesAnother : {false, true}) {
+        const TemporaryFolder folder;
+        makeFlatStore(folder.path(), tube());
+        const ServerProcess server(folder.path());
+        const auto records = folder.path() / "records.sqlite3";
+        auto client = opened("leaver", server.port());
+        ASSERT_TRUE(client);
+        const std::string wall = wallOf(*client);
+        sqlite3* database = nullptr;
+        ASSERT_EQ(sqlite3_open(records.c_str(), &database), SQLITE_OK);
+        const std::unique_ptr<sqlite3, int (*)(sqlite3*)> closed(database, sqlite3_close);
+        const auto run = [&](const char* sql) {
+            ASSERT_EQ(sqlite3_exec(database, sql, nullptr, nullptr, nullptr), SQLITE_OK);
+        };
+        run("BEGIN IMMEDIATE");
+        client->send(shown(1, pictureAt(*client, 10.0), 60'000));
+        EXPECT_GT(share(*client), 0.0);
+        ASSERT_TRUE(client->openCase(leavesAnother ? "scan" : smallCaseName)->has_case_opened());
+        const auto failed = awaited(*client, [](const auto& answer) { return answer.has_error(); });
+        EXPECT_EQ(failed.error().code(), protocol::ErrorReport::INTERNAL);
+        if (leavesAnother) {
+            ASSERT_TRUE(client->openCase(smallCaseName)->has_case_opened());
+        }
+        client->send(shown(2, pictureAt(*client, 40.0), 60'000));
+        EXPECT_EQ(seen(*client).kept(), 0u);
+        run("ROLLBACK");
+        const auto told = awaited(*client, [](const auto& answer) {
+            return answer.has_wall_seen() && answer.wall_seen().request() == 0;
+        });
+        EXPECT_TRUE(told.wall_seen().recorded());
+        EXPECT_EQ(told.wall_seen().kept(), leavesAnother ? 0u : 2u);
+        // What it says has been seen is on the disk.
+        const auto kept = records::SeenStore::open(records)->find({"leaver", wall, {}}).value();
+        ASSERT_TRUE(kept);
+        const auto shownLong = std::count_if(kept->times.begin(), kept->times.end(),
+                                             [](auto time) { return time >= 300'000; });
+        EXPECT_NEAR(double(shownLong) / double(kept->times.size()), told.wall_seen().share(), 0.05);
+    }
 }
 
 TEST_F(LedgerWords, AReadersNameHasItsBounds) {
