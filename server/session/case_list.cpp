@@ -80,10 +80,12 @@ Result<std::vector<CaseSummary>> CaseReader::read(records::BookmarkStore& bookma
     std::vector<CaseSummary> all;
     for (const std::string& name : names) {
         const std::string files = filesOf(name);
-        auto before = known_.find(name);
-        Known one = before != known_.end() && !files.empty() && before->second.files == files
-                        ? std::move(before->second)
-                        : readOne(name, files);
+        const auto before = known_.find(name);
+        // What is repaired in place keeps its size: damage is looked for anew.
+        const bool isKnown = before != known_.end() && !files.empty() &&
+                             before->second.files == files &&
+                             before->second.summary.state != CaseSummary::State::damaged;
+        Known one = isKnown ? std::move(before->second) : readOne(name, files);
         one.summary.bookmarks = counts ? counts->of(name, one.scan) : 0;
         all.push_back(one.summary);
         known.emplace(name, std::move(one));

@@ -35,8 +35,8 @@ struct CaseSummary {
 };
 
 /// Reads a case's products as opening does, but for those without which it opens as well, and
-/// remembers what it found until one of its files is another: half a millisecond for a case that is
-/// new, some 50 µs for one that is known. Belongs to one thread.
+/// remembers what it found, but damage, until one of its files is another: half a millisecond for a
+/// case that is new, some 50 µs for one that is known. Belongs to one thread.
 class CaseReader {
 public:
     explicit CaseReader(store::CaseStore store) : store_(std::move(store)) {}

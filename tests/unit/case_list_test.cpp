@@ -117,6 +117,17 @@ TEST_F(CaseList, ACaseIsReadyWhereItCanBeOpened) {
     EXPECT_EQ(of("scan").state, State::damaged);
 }
 
+TEST_F(CaseList, WhatIsRepairedInPlaceIsReadyAgain) {
+    makeScan("scan");
+    const auto file = fileOf("scan", "ct");
+    const std::string whole = tests::fileContent(file);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    std::ofstream(file, std::ios::binary) << std::string(whole.size(), 'x');
+    EXPECT_EQ(of("scan").state, State::damaged);
+    std::ofstream(file, std::ios::binary) << whole;
+    EXPECT_EQ(of("scan").state, State::ready);
+}
+
 TEST_F(CaseList, FollowsWhatIsPublishedAndBookmarked) {
     makeScan("a");
     makeScan("b");
