@@ -113,11 +113,17 @@ FrameScheduler::FramePointer FrameScheduler::begin(SessionId session, Entry& ent
     auto frame = std::make_shared<Frame>();
     frame->job = std::move(*entry.waiting);
     entry.waiting.reset();
+    const std::size_t viewport = frame->job.header.viewport;
+    PictureDetail& detail = entry.details[viewport];
+    // What was measured of cheap pictures would make one band of a costly one.
+    if (DrawingKind kind = kindOf(frame->job.view); kind != entry.kinds[viewport]) {
+        entry.kinds[viewport] = std::move(kind);
+        detail = {};
+    }
     const glm::ivec2 full(frame->job.width, frame->job.height);
     frame->size = full;
     if (frame->job.coarse && frame->job.moving && canBeCoarse(frame->job.view))
-        frame->size =
-            entry.details[frame->job.header.viewport].nextSize(full, shareOf(session, now));
+        frame->size = detail.nextSize(full, shareOf(session, now));
     frame->begunAt = now;
     return frame;
 }

@@ -98,7 +98,8 @@ private:
         double recentMs = 0.0;       // used, fading with usageWindow
         Clock::time_point recentAt;  // when recentMs was true
         std::array<PictureDetail, protocol::maxViewports> details;
-        std::array<bool, protocol::maxViewports> gaveUp{};  // since its last finished picture
+        std::array<DrawingKind, protocol::maxViewports> kinds;  // that details are of
+        std::array<bool, protocol::maxViewports> gaveUp{};      // since its last finished picture
         bool wants() const { return waiting || underWay; }
     };
 

@@ -5,6 +5,20 @@
 
 namespace haustra::session {
 
+DrawingKind kindOf(const AnyView& view) {
+    DrawingKind kind{.view = view.index()};
+    std::visit(
+        [&](const auto& any) {
+            if constexpr (requires { any.slab; }) kind.slab = any.slab;
+            if constexpr (requires { any.optics; }) kind.optics = any.optics;
+            if constexpr (requires { any.body; }) kind.body = any.body;
+            if constexpr (requires { any.beneathWallMm; })
+                kind.beneathWall = any.beneathWallMm > 0.0;
+        },
+        view);
+    return kind;
+}
+
 bool canBeCoarse(const AnyView& view) {
     return std::visit(
         [](const auto& any) {

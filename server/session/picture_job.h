@@ -7,6 +7,7 @@
 #include "session/open_case.h"
 
 #include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <variant>
@@ -33,6 +34,17 @@ struct PictureJob {
     /// Called on the render thread with the job's own header, filled in.
     std::function<void(const protocol::TileHeader&, Result<Image>)> done;
 };
+
+/// What, beside the place, decides how long a picture takes to draw.
+struct DrawingKind {
+    std::size_t view = 0;  ///< which of AnyView's
+    Slab slab{};           ///< of views that can have one
+    Optics optics{};       ///< of views that have them
+    bool body = false;     ///< of an overview
+    bool beneathWall = false;
+    bool operator==(const DrawingKind&) const = default;
+};
+DrawingKind kindOf(const AnyView& view);
 
 /// Whether a smaller picture of this view shows the same, coarser, and saves time: slices that are
 /// no slabs are drawn in no time, and the whole strip never moves.

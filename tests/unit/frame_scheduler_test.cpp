@@ -365,6 +365,37 @@ TEST_F(OneSession, BandsCoverThePictureOnce) {
     }
 }
 
+TEST_F(OneSession, CheapPicturesSayNothingOfACostlyKind) {
+    constexpr double cheapRowMs = 1e-3;
+    const auto slice = [](std::uint64_t sequence, double slabMm) {
+        PictureJob job = someJob(1, sequence, 256, 3);
+        job.view = SliceView{.slab = {.thicknessMm = slabMm}};
+        return job;
+    };
+    const auto drawCheap = [&](PictureJob job) {
+        add(std::move(job));
+        int bands = 0;
+        for (auto outcome = Outcome::goesOn; outcome == Outcome::goesOn; ++bands) {
+            const auto turn = scheduler_.next(now_);
+            outcome = scheduler_.drawn(*turn, turn->band.rows * cheapRowMs, now_);
+        }
+        return bands;
+    };
+    for (std::uint64_t sequence = 2; sequence < 5; ++sequence)
+        drawCheap(slice(sequence, 0.0));
+    EXPECT_EQ(drawCheap(slice(5, 0.0)), 1) << "all of them cost the same";
+    // Each band is no longer than band() bears, of those that follow, too.
+    for (std::uint64_t sequence = 6; sequence < 9; ++sequence) {
+        add(slice(sequence, 100.0));
+        EXPECT_EQ(finish(), sequence);
+    }
+    EXPECT_EQ(drawCheap(slice(9, 0.0)), 2);
+    add(slice(10, 50.0));
+    EXPECT_EQ(finish(), 10u) << "another slab";
+    add(someJob(1, 11, 256, 3));
+    EXPECT_EQ(finish(), 11u);
+}
+
 template <std::size_t... kind>
 std::vector<AnyView> oneOfEach(std::index_sequence<kind...>) {
     return {AnyView(std::in_place_index<kind>)...};
