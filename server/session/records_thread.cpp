@@ -3,6 +3,8 @@
 #include "protocol/limits.h"
 #include "session/worker.h"
 
+#include <deque>
+#include <set>
 #include <utility>
 
 namespace haustra::session {
@@ -18,8 +20,32 @@ struct RecordsThread::Keeping {
     records::BookmarkStore bookmarks;
     records::SeenStore seen;
     CaseReader cases;
-    std::vector<Add> additions;  // since the last commit
-    std::vector<KeepSeen> kept;  // likewise
+    std::vector<Add> additions;                              // since the last commit
+    std::vector<KeepSeen> kept;                              // likewise
+    std::optional<Result<std::vector<CaseSummary>>> listed;  // of this batch
+
+    // Nobody's acknowledgement waits for what others read.
+    void serve(std::deque<Request>& batch) {
+        listed.reset();
+        std::set<std::uint64_t> readers;
+        std::vector<Request*> inOrder;
+        for (Request& request : batch) {
+            Add* const add = std::get_if<Add>(&request);
+            if (add && !readers.contains(add->by)) {
+                serve(*add);
+                continue;
+            }
+            inOrder.push_back(&request);
+            std::visit(
+                [&](const auto& body) {
+                    if constexpr (requires { body.by; }) readers.insert(body.by);
+                },
+                request);
+        }
+        for (Request* const request : inOrder)
+            std::visit([&](auto& body) { serve(body); }, *request);
+        commit();
+    }
 
     /// Gives each that waits its part of what `store` makes of all.
     template <class Waiting, class Store>
@@ -35,6 +61,7 @@ struct RecordsThread::Keeping {
         }
     }
     void commit() {
+        if (!additions.empty()) listed.reset();  // cases have more bookmarks now
         commit(additions, [&](std::vector<Add>& waiting) {
             std::vector<records::NewBookmark> batch;
             for (Add& add : waiting)
@@ -60,7 +87,8 @@ struct RecordsThread::Keeping {
     }
     void serve(ListCases& list) {
         commit();
-        list.done(guarded([&] { return cases.read(bookmarks); }));
+        if (!listed) listed = guarded([&] { return cases.read(bookmarks); });
+        list.done(*listed);
     }
     void serve(KeepSeen& keep) { kept.push_back(std::move(keep)); }
     void serve(ForgetSeen& forget) {
@@ -82,22 +110,19 @@ RecordsThread::RecordsThread(records::BookmarkStore bookmarks, records::SeenStor
     worker_.start(
         "records", maxSharedCommit,
         [keeping =
-             Keeping{std::move(bookmarks), std::move(seen), CaseReader(std::move(cases)), {}, {}}](
-            auto& taken) mutable {
-            for (Request& request : taken)
-                std::visit([&](auto& body) { keeping.serve(body); }, request);
-            keeping.commit();
-        });
+             Keeping{
+                 std::move(bookmarks), std::move(seen), CaseReader(std::move(cases)), {}, {}, {}}](
+            auto& taken) mutable { keeping.serve(taken); });
 }
 
-void RecordsThread::add(records::NewBookmark bookmark, Added done) {
-    worker_.push(Add{std::move(bookmark), std::move(done)});
+void RecordsThread::add(std::uint64_t by, records::NewBookmark bookmark, Added done) {
+    worker_.push(Add{by, std::move(bookmark), std::move(done)});
 }
-void RecordsThread::list(std::string caseName, std::string scan, Listed done) {
-    worker_.push(List{std::move(caseName), std::move(scan), std::move(done)});
+void RecordsThread::list(std::uint64_t by, std::string caseName, std::string scan, Listed done) {
+    worker_.push(List{by, std::move(caseName), std::move(scan), std::move(done)});
 }
-void RecordsThread::listCases(Cases done) {
-    worker_.push(ListCases{std::move(done)});
+void RecordsThread::listCases(std::uint64_t by, Cases done) {
+    worker_.push(ListCases{by, std::move(done)});
 }
 void RecordsThread::keepSeen(records::Ledger ledger, Done done) {
     worker_.push(KeepSeen{std::move(ledger), std::move(done)});

@@ -7,6 +7,7 @@
 #include "session/worker.h"
 #include "store/case_store.h"
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,9 +17,10 @@
 
 namespace haustra::session {
 
-/// Owns the records. Requests are served in order; bookmarks that wait together to be added share
-/// one commit, and so do ledgers to be kept. Its functions may be called from any thread and never
-/// block; callbacks come on the records thread.
+/// Owns the records. Requests are served in order, but that bookmarks which wait to be added go
+/// before the lists of other sessions. Bookmarks that wait together share one commit, and so do
+/// ledgers to be kept; lists of cases that wait together are read once. Its functions may be called
+/// from any thread and never block; callbacks come on the records thread.
 class RecordsThread {
 public:
     RecordsThread(records::BookmarkStore bookmarks, records::SeenStore seen,
@@ -26,12 +28,13 @@ public:
 
     /// `done` is called after the commit.
     using Added = std::function<void(Result<records::Bookmark>)>;
-    void add(records::NewBookmark bookmark, Added done);
+    /// `by`: the session that asks, whose answers keep their order.
+    void add(std::uint64_t by, records::NewBookmark bookmark, Added done);
     using Listed = std::function<void(Result<std::vector<records::Bookmark>>)>;
     /// `scan` is what the case of that name is of.
-    void list(std::string caseName, std::string scan, Listed done);
+    void list(std::uint64_t by, std::string caseName, std::string scan, Listed done);
     using Cases = std::function<void(Result<std::vector<CaseSummary>>)>;
-    void listCases(Cases done);
+    void listCases(std::uint64_t by, Cases done);
 
     /// What readers have seen, as records::SeenStore; `done` of what is kept or forgotten is called
     /// after the commit.
@@ -45,14 +48,17 @@ public:
 
 private:
     struct Add {
+        std::uint64_t by;
         records::NewBookmark bookmark;
         Added done;
     };
     struct List {
+        std::uint64_t by;
         std::string caseName, scan;
         Listed done;
     };
     struct ListCases {
+        std::uint64_t by;
         Cases done;
     };
     struct KeepSeen {

@@ -213,7 +213,7 @@ auto Session::answer(void (Session::*then)(std::uint64_t, Result<T>), std::uint6
 
 void Session::handle(const protocol::ListCases& message) {
     services_.records.listCases(
-        answer(&Session::listedCases, message.request(), protocol::listWeight));
+        id_, answer(&Session::listedCases, message.request(), protocol::listWeight));
 }
 
 void Session::listedCases(std::uint64_t request, Result<std::vector<CaseSummary>> cases) {
@@ -354,7 +354,7 @@ void Session::handle(const protocol::SetWallPaint& message) {
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open");
     if (const auto taken = pictures_->input(message); !taken) return report(taken.error());
     if (message.marks())
-        services_.records.list(case_->name, case_->scan,
+        services_.records.list(id_, case_->name, case_->scan,
                                answer(&Session::listedToPaint, readings_, protocol::listWeight));
 }
 
@@ -505,7 +505,7 @@ void Session::handle(const protocol::AddBookmark& message) {
     auto bookmark = bookmarkFrom(message, case_->name, case_->scan);
     if (!bookmark) return report(bookmark.error(), request);
     services_.records.add(
-        std::move(*bookmark),
+        id_, std::move(*bookmark),
         [io = io_, &news = services_.bookmarks, of = case_, by = id_,
          told = answer(&Session::addedBookmark, request)](Result<records::Bookmark> added) {
             auto one = guarded(
@@ -538,7 +538,7 @@ void Session::handle(const protocol::ListBookmarks& message) {
     const std::uint64_t request = message.request();
     if (state_ != State::open) return refuse(ErrorReport::BAD_STATE, "no case is open", request);
     services_.records.list(
-        case_->name, case_->scan,
+        id_, case_->name, case_->scan,
         [of = case_, told = answer(&Session::listedBookmarks, request, protocol::listWeight)](
             Result<std::vector<records::Bookmark>> listed) {
             told(guarded([&]() -> Result<std::vector<MarkedBookmark>> {

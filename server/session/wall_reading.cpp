@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include <asio/post.hpp>
@@ -83,10 +84,11 @@ void WallReading::chosen() {
 
 void WallReading::setBookmarks(const std::vector<records::Bookmark>& bookmarks) {
     gazes_.clear();
-    for (const records::Bookmark& bookmark : bookmarks)
+    const std::size_t most = protocol::maxMarkedBookmarks,
+                      passedOver = bookmarks.size() - std::min(bookmarks.size(), most);
+    for (const records::Bookmark& bookmark : std::span(bookmarks).subspan(passedOver))
         keep(bookmark);
-    gazesAreNew_ = true;
-    listed_ = true;
+    gazesAreNew_ = listed_ = true;
     if (choice_.marks) repaint();
 }
 
