@@ -66,12 +66,13 @@ Bookmark bookmarkAt(const Statement& row) {
 }  // namespace
 
 BookmarkStore::BookmarkStore(Database database, Statement insert, Statement find, Statement select,
-                             Statement adopt)
+                             Statement adopt, Statement measure)
     : database_(std::move(database)),
       insert_(std::move(insert)),
       find_(std::move(find)),
       list_(std::move(select)),
-      adopt_(std::move(adopt)) {}
+      adopt_(std::move(adopt)),
+      measure_(std::move(measure)) {}
 
 Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
     auto database = TRY(openDatabase(file, schema));
@@ -96,27 +97,35 @@ Result<BookmarkStore> BookmarkStore::open(const std::filesystem::path& file) {
     auto adopt = TRY(
         Statement::prepare(opened, "UPDATE OR IGNORE scan_bookmarks SET scan = ? WHERE scan = ?"));
 
+    const std::string sum =
+        "SELECT coalesce(sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + " +
+        std::to_string(protocol::bookmarkOverheadBytes) +
+        "), 0) FROM scan_bookmarks WHERE scan = ?";
+    auto measure = TRY(Statement::prepare(opened, sum.c_str()));
+
     BookmarkStore store(std::move(database), std::move(insert), std::move(find), std::move(list),
-                        std::move(adopt));
-    TRY(store.measure());
+                        std::move(adopt), std::move(measure));
+    TRY(store.findUnadopted());
     return store;
 }
 
-Result<void> BookmarkStore::measure() {
-    const std::string sums =
-        "SELECT scan, sum(length(CAST(note AS BLOB)) + length(CAST(client_key AS BLOB)) + " +
-        std::to_string(protocol::bookmarkOverheadBytes) + ") FROM scan_bookmarks GROUP BY scan";
-    auto sizes = TRY(Statement::prepare(database_.get(), sums.c_str()));
-    scanBytes_.clear();
+Result<void> BookmarkStore::findUnadopted() {
+    auto scans =
+        TRY(Statement::prepare(database_.get(), "SELECT DISTINCT scan FROM scan_bookmarks"));
     unadopted_.clear();
-    auto row = sizes.step();
-    for (; row && *row; row = sizes.step()) {
-        const std::string scan = sizes.text(0);
-        scanBytes_[scan] = std::size_t(sizes.integer(1));
-        if (scan.starts_with(caseForScan)) unadopted_.insert(scan);
-    }
+    auto row = scans.step();
+    for (; row && *row; row = scans.step())
+        if (const std::string scan = scans.text(0); scan.starts_with(caseForScan))
+            unadopted_.insert(scan);
     if (!row) return tl::make_unexpected(row.error());
     return {};
+}
+
+Result<std::size_t> BookmarkStore::bytesOf(const std::string& scan) {
+    const ResetAfter reset(measure_);
+    measure_.bind(1, scan);
+    TRY(measure_.step());
+    return std::size_t(measure_.integer(0));
 }
 
 Result<void> BookmarkStore::adopt(const std::string& caseName, const std::string& scan) {
@@ -127,10 +136,10 @@ Result<void> BookmarkStore::adopt(const std::string& caseName, const std::string
     const auto adopted = adopt_.step();
     adopt_.reset();
     if (!adopted) return tl::make_unexpected(adopted.error());
-    return measure();
+    return findUnadopted();
 }
 
-Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
+Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark, ScanBytes& bytes) {
     find_.bind(1, bookmark.scan);
     find_.bind(2, bookmark.clientKey);
     const auto found = find_.step();
@@ -140,7 +149,10 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
     if (!found) return tl::make_unexpected(found.error());
     if (known) return *known;
 
-    if (scanBytes_[bookmark.scan] + listBytes(bookmark) > protocol::maxScanBookmarkBytes)
+    auto taken = bytes.find(bookmark.scan);
+    if (taken == bytes.end())
+        taken = bytes.emplace(bookmark.scan, TRY(bytesOf(bookmark.scan))).first;
+    if (taken->second + listBytes(bookmark) > protocol::maxScanBookmarkBytes)
         return fail(ErrorKind::badInput, "the scan holds as many bookmarks as it can", "bookmarks");
     int parameter = 0;
     insert_.bind(++parameter, bookmark.caseName);
@@ -159,24 +171,22 @@ Result<Bookmark> BookmarkStore::addOne(const NewBookmark& bookmark) {
     }
     insert_.reset();
     if (!inserted) return tl::make_unexpected(inserted.error());
-    scanBytes_[bookmark.scan] += listBytes(bookmark);
+    taken->second += listBytes(bookmark);
     return added;
 }
 
 Result<std::vector<Result<Bookmark>>> BookmarkStore::add(
     const std::vector<NewBookmark>& bookmarks) {
-    const auto bytesBefore = scanBytes_;
-    auto done = inTransaction(database_.get(), [&]() -> Result<std::vector<Result<Bookmark>>> {
+    return inTransaction(database_.get(), [&]() -> Result<std::vector<Result<Bookmark>>> {
         std::vector<Result<Bookmark>> added;
+        ScanBytes bytes;
         for (const NewBookmark& bookmark : bookmarks) {
-            added.push_back(addOne(bookmark));
+            added.push_back(addOne(bookmark, bytes));
             if (!added.back() && added.back().error().kind == ErrorKind::io)
                 return tl::make_unexpected(added.back().error());
         }
         return added;
     });
-    if (!done) scanBytes_ = bytesBefore;
-    return done;
 }
 
 std::size_t BookmarkCounts::of(const std::string& caseName, const std::string& scan) const {

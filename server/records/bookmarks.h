@@ -51,8 +51,9 @@ public:
     /// Adds all in one transaction, which costs one fsync. Where a scan already holds the client
     /// key, the bookmark of that key is returned and nothing is stored: a client that has lost an
     /// acknowledgement may ask again. One that would take its scan past
-    /// protocol::maxScanBookmarkBytes is refused (badInput), and the others are added. Where the
-    /// transaction fails, none is there.
+    /// protocol::maxScanBookmarkBytes, with what other processes have added, is refused (badInput),
+    /// and the others are added. Where the transaction fails, none is there. Some milliseconds for
+    /// a scan that holds as many as it can.
     Result<std::vector<Result<Bookmark>>> add(const std::vector<NewBookmark>& bookmarks);
 
     /// A scan's bookmarks in the order in which they were added.
@@ -66,14 +67,17 @@ public:
     Result<void> adopt(const std::string& caseName, const std::string& scan);
 
 private:
+    /// What each scan's bookmarks take in their list, of those that a transaction has asked for.
+    using ScanBytes = std::map<std::string, std::size_t>;
+
     BookmarkStore(Database database, Statement insert, Statement find, Statement select,
-                  Statement adopt);
-    Result<void> measure();
-    Result<Bookmark> addOne(const NewBookmark& bookmark);
+                  Statement adopt, Statement measure);
+    Result<void> findUnadopted();
+    Result<std::size_t> bytesOf(const std::string& scan);
+    Result<Bookmark> addOne(const NewBookmark& bookmark, ScanBytes& bytes);
 
     Database database_;  // first: outlives the statements
-    Statement insert_, find_, list_, adopt_;
-    std::map<std::string, std::size_t> scanBytes_;
+    Statement insert_, find_, list_, adopt_, measure_;
     std::set<std::string> unadopted_;  // cases with bookmarks of no known scan
 };
 

@@ -184,10 +184,31 @@ Result<CaseQuestion> questionFrom(const protocol::PickWall& message, const OpenC
 
 // ---- to clients -------------------------------------------------------------------------------
 
+namespace {
+
+// Of answers that have a request and no bound of their own.
+std::uint64_t requestOf(const protocol::ServerMessage& message) {
+    switch (message.body_case()) {
+        case protocol::ServerMessage::kCaseList:
+            return message.case_list().request();
+        case protocol::ServerMessage::kBookmarkList:
+            return message.bookmark_list().request();
+        case protocol::ServerMessage::kFindingList:
+            return message.finding_list().request();
+        case protocol::ServerMessage::kLedger:
+            return message.ledger().request();
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message) {
     if (message.ByteSizeLong() > protocol::maxServerControlBytes)
         return frameOf(errorMessage(protocol::ErrorReport::INTERNAL,
-                                    "the answer is too long for one message", false));
+                                    "the answer is too long for one message", false,
+                                    requestOf(message)));
     return protocol::controlFrame(message);
 }
 

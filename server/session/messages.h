@@ -68,7 +68,7 @@ inline int weightOf(const protocol::PickWall&) {
     return protocol::measurementWeight;
 }
 
-/// The message as a frame. One over the protocol's bound becomes an INTERNAL error.
+/// The message as a frame. One over the protocol's bound becomes an INTERNAL error of its request.
 std::vector<std::uint8_t> frameOf(const protocol::ServerMessage& message);
 
 protocol::ServerMessage errorMessage(protocol::ErrorReport::Code code, const std::string& message,

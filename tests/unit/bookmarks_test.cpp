@@ -2,6 +2,7 @@
 #include "records/bookmarks.h"
 
 #include "end_to_end/run_program.h"
+#include "protocol/limits.h"
 
 #include <fstream>
 
@@ -183,6 +184,26 @@ TEST_F(Bookmarks, AScanHoldsSoManyAndOthersGoOn) {
     // A retry of one that is stored is not an addition; and a restart does not make room.
     EXPECT_TRUE((*store.add({long1(0)}))[0]);
     EXPECT_FALSE((*open().add({long1(5000)}))[0]);
+}
+
+// A list that is too long for one message could never be read again.
+TEST_F(Bookmarks, TwoServersTogetherKeepAScansBound) {
+    BookmarkStore one = open(), other = open();
+    std::size_t bytes = 0;
+    for (int n = 0; n < 2000; n += 50) {
+        std::vector<NewBookmark> batch;
+        for (int k = n; k < n + 50; ++k) {
+            batch.push_back(bookmark("a", k));
+            batch.back().note = std::string(2000, 'x');
+        }
+        ASSERT_TRUE((n % 100 == 0 ? one : other).add(batch));
+    }
+    const auto listed = one.list("a");
+    ASSERT_TRUE(listed);
+    for (const Bookmark& added : *listed)
+        bytes += added.note.size() + added.clientKey.size() + protocol::bookmarkOverheadBytes;
+    EXPECT_LE(bytes, protocol::maxScanBookmarkBytes);
+    EXPECT_GT(bytes, protocol::maxScanBookmarkBytes - 2400);
 }
 
 TEST_F(Bookmarks, AFileThatIsNoDatabaseIsRefused) {
