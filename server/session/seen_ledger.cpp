@@ -26,6 +26,60 @@ Result<ReaderSeen> readerOf(SeenWork& work, const records::Ledger& ledger, doubl
                                protocol::maxReportedPatches, false)};
 }
 
+using Readers = std::vector<ReaderSeen>;
+
+// What each reader has missed, one task of the paint thread after the other: others have their
+// turns between. By way of the io thread, which ends before the paint thread does.
+class ReaderByReader : public std::enable_shared_from_this<ReaderByReader> {
+public:
+    ReaderByReader(asio::any_io_executor io, PaintThread& painting, std::shared_ptr<SeenWork> work,
+                   double leastMm2, std::weak_ptr<const void> asker,
+                   std::function<void(Result<Readers>)> told)
+        : io_(std::move(io)),
+          painting_(painting),
+          work_(std::move(work)),
+          leastMm2_(leastMm2),
+          asker_(std::move(asker)),
+          told_(std::move(told)) {}
+
+    bool wanted() const { return !asker_.expired(); }
+    void fail(const Error& error) { told_(tl::make_unexpected(error)); }
+    // After those who have no ledger that is kept.
+    void start(Readers first, std::vector<records::Ledger> ledgers) {
+        readers_ = std::move(first);
+        ledgers_ = std::move(ledgers);
+        next();
+    }
+
+private:
+    void next() {
+        if (!wanted()) return;
+        if (at_ == ledgers_.size() || readers_.size() == std::size_t(protocol::maxReportedLedgers))
+            return told_(std::move(readers_));
+        painting_.push([self = shared_from_this(), &ledger = ledgers_[at_++]] {
+            auto reader = guarded([&] { return readerOf(*self->work_, ledger, self->leastMm2_); });
+            asio::post(self->io_, [self, reader = std::move(reader)]() mutable {
+                self->found(std::move(reader));
+            });
+        });
+    }
+    void found(Result<ReaderSeen> reader) {
+        if (!reader) return fail(reader.error());
+        readers_.push_back(std::move(*reader));
+        next();
+    }
+
+    asio::any_io_executor io_;
+    PaintThread& painting_;
+    std::shared_ptr<SeenWork> work_;
+    double leastMm2_;
+    std::weak_ptr<const void> asker_;
+    std::function<void(Result<Readers>)> told_;
+    Readers readers_;
+    std::vector<records::Ledger> ledgers_;
+    std::size_t at_ = 0;  // of ledgers_, the next
+};
+
 }  // namespace
 
 Missed missedOf(const OpenCase& of, std::span<const std::uint8_t> seen, double leastMm2, int most,
@@ -298,10 +352,11 @@ void SeenLedger::flags(std::function<void(Result<SeenFlags>)> told) {
         std::move(told));
 }
 
-void SeenLedger::report(double leastMm2,
-                        std::function<void(Result<std::vector<ReaderSeen>>)> told) {
-    using Readers = std::vector<ReaderSeen>;
+void SeenLedger::report(double leastMm2, std::weak_ptr<const void> asker,
+                        std::function<void(Result<Readers>)> told) {
     flush();
+    const auto report = std::make_shared<ReaderByReader>(io_, painting_, work_, leastMm2,
+                                                         std::move(asker), std::move(told));
     onPaintThread<Readers>(
         [leastMm2, recorded = recorded_, key = key_](SeenWork& work) -> Result<Readers> {
             Readers readers;
@@ -313,28 +368,14 @@ void SeenLedger::report(double leastMm2,
                                             protocol::maxReportedPatches, false)});
             return readers;
         },
-        [&painting = painting_, &records = records_, io = io_, work = work_, leastMm2, key = key_,
-         told = std::move(told)](Result<Readers> own) {
-            if (!own) return told(std::move(own));
-            records.listSeen(key.wall, [&painting, io, work, leastMm2, told, own = std::move(*own)](
-                                           Result<std::vector<records::Ledger>> kept) {
-                // By way of the io thread, which ends before the paint thread does.
-                asio::post(io, [&painting, io, work, leastMm2, told, own,
-                                kept = std::move(kept)]() mutable {
-                    painting.push([io, work, leastMm2, told, own = std::move(own),
-                                   kept = std::move(kept)]() mutable {
-                        auto readers = guarded([&]() -> Result<Readers> {
-                            const auto all = TRY(std::move(kept));
-                            for (const records::Ledger& ledger : all) {
-                                if (own.size() == std::size_t(protocol::maxReportedLedgers)) break;
-                                own.push_back(TRY(readerOf(*work, ledger, leastMm2)));
-                            }
-                            return std::move(own);
-                        });
-                        asio::post(io, [told, readers = std::move(readers)]() mutable {
-                            told(std::move(readers));
-                        });
-                    });
+        [&records = records_, io = io_, wall = key_.wall, report](Result<Readers> own) {
+            if (!own) return report->fail(own.error());
+            if (!report->wanted()) return;
+            records.listSeen(wall, [io, report, own = std::move(*own)](
+                                       Result<std::vector<records::Ledger>> kept) mutable {
+                asio::post(io, [report, own = std::move(own), kept = std::move(kept)]() mutable {
+                    if (!kept) return report->fail(kept.error());
+                    report->start(std::move(own), std::move(*kept));
                 });
             });
         });

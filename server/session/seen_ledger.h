@@ -137,8 +137,10 @@ public:
     void flags(std::function<void(Result<SeenFlags>)> told);
     /// What all readers whose ledgers of this wall are kept have seen of it, the newest
     /// protocol::maxReportedLedgers; where this one is not kept, it first. Fails (io) where a
-    /// record is damaged. Some ten milliseconds of the paint thread's for each.
-    void report(double leastMm2, std::function<void(Result<std::vector<ReaderSeen>>)> told);
+    /// record is damaged. Some ten milliseconds of the paint thread's for each reader, between
+    /// which others have their turn. Where the asker has gone, `told` may not be called.
+    void report(double leastMm2, std::weak_ptr<const void> asker,
+                std::function<void(Result<std::vector<ReaderSeen>>)> told);
 
     const std::shared_ptr<SeenWork>& work() const { return work_; }
     /// After a fault in what was posted here (postTo).

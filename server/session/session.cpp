@@ -150,6 +150,7 @@ void Session::disconnected() {
     case_.reset();
     counted_.reset();
     questions_.clear();
+    reports_.clear();
 }
 
 void Session::broken(const std::string& what) {
@@ -452,12 +453,27 @@ void Session::handle(const protocol::AskSeenReport& message) {
     const auto leastMm2 = leastMm2From(message.least_mm2());
     if (!leastMm2) return report(leastMm2.error(), request);
     SeenLedger& ledger = reading_->ledger();
-    ledger.report(*leastMm2,
-                  ofLedger<std::vector<ReaderSeen>>(
-                      request, [request, least = *leastMm2, own = ledger.key()](
-                                   Session& self, const std::vector<ReaderSeen>& readers) {
-                          self.send(seenReportMessage(readers, own, least, request));
-                      }));
+    auto told = ofLedger<std::vector<ReaderSeen>>(
+        request, [request, least = *leastMm2, own = ledger.key()](
+                     Session& self, const std::vector<ReaderSeen>& readers) {
+            self.send(seenReportMessage(readers, own, least, request));
+        });
+    reports_.push_back({ledger.shared_from_this(), *leastMm2, std::move(told)});
+    if (!reporting_) reportNext();
+}
+
+// Each holds what all readers of a wall have seen.
+void Session::reportNext() {
+    reporting_ = !reports_.empty();
+    if (!reporting_) return;
+    const ReportRequest next = std::move(reports_.front());
+    reports_.pop_front();
+    next.of->report(
+        next.leastMm2, weak_from_this(),
+        [weak = weak_from_this(), told = next.told](Result<std::vector<ReaderSeen>> readers) {
+            told(std::move(readers));
+            if (const auto self = weak.lock()) self->reportNext();
+        });
 }
 
 // Older clients are told of what is worth to be read.

@@ -93,6 +93,7 @@ private:
     template <class Question>
     void handleQuestion(const Question& message);
     void askNext();
+    void reportNext();
     void answeredQuestion(std::uint64_t request, Result<CaseAnswer> answer);
     void opened(Result<std::shared_ptr<const OpenCase>> result);
     void leaveCase();
@@ -145,6 +146,13 @@ private:
 
     std::deque<CaseRequest> questions_;  // not yet asked
     bool asking_ = false;
+    struct ReportRequest {
+        std::shared_ptr<SeenLedger> of;
+        double leastMm2;
+        std::function<void(Result<std::vector<ReaderSeen>>)> told;
+    };
+    std::deque<ReportRequest> reports_;  // not yet asked for
+    bool reporting_ = false;
 };
 
 }  // namespace haustra::session
