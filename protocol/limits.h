@@ -82,9 +82,10 @@ inline constexpr std::size_t maxReaderBytes = 64;
 inline constexpr std::size_t maxShownPictures = 256;
 inline constexpr int maxMissedPatches = 64;  ///< of a list: the largest
 inline constexpr double leastListedMm2 = 1.0, mostListedMm2 = 1e6;
-/// Kept of one wall, of all readers; of the newest a report tells so many, each with its largest
-/// patches.
-inline constexpr int maxWallLedgers = 256, maxReportedLedgers = 32, maxReportedPatches = 32;
+/// Kept of one wall, of all readers, and of each of them; of the newest a report tells so many,
+/// each with its largest patches.
+inline constexpr int maxWallLedgers = 256, maxReaderLedgers = 8, maxReportedLedgers = 32,
+                     maxReportedPatches = 32;
 /// Its flags, twice a bit each, fit in one message.
 inline constexpr int maxLedgerTriangles = 1 << 23;
 

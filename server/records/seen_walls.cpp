@@ -93,11 +93,12 @@ Result<void> dropShare(sqlite3* database) {
 }  // namespace
 
 SeenStore::SeenStore(Database database, Statement find, Statement ofWall, Statement count,
-                     Statement write, Statement forget)
+                     Statement makeRoom, Statement write, Statement forget)
     : database_(std::move(database)),
       find_(std::move(find)),
       ofWall_(std::move(ofWall)),
       count_(std::move(count)),
+      makeRoom_(std::move(makeRoom)),
       write_(std::move(write)),
       forget_(std::move(forget)) {}
 
@@ -112,13 +113,18 @@ Result<SeenStore> SeenStore::open(const std::filesystem::path& file) {
     auto find = TRY(prepared(select + byKey));
     auto ofWall = TRY(prepared(select + " ORDER BY changed_utc DESC, reader LIMIT ?"));
     auto count = TRY(prepared("SELECT count(*) FROM seen_walls WHERE wall = ?"));
+    auto makeRoom = TRY(prepared(
+        "DELETE FROM seen_walls WHERE (wall, reader, pixels_per_mm, least_ms) IN (SELECT wall, "
+        "reader, pixels_per_mm, least_ms FROM seen_walls WHERE wall = ? AND reader = ? ORDER BY "
+        "pixels_per_mm = ? AND least_ms = ? DESC, changed_utc DESC LIMIT -1 OFFSET " +
+        std::to_string(protocol::maxReaderLedgers - 1) + ")"));
     auto write =
         TRY(prepared("INSERT OR REPLACE INTO seen_walls(wall, reader, pixels_per_mm, least_ms, "
                      "case_name, scan, triangles, times, changed_utc) "
                      "VALUES(?,?,?,?,?,?,?,?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'))"));
     auto forget = TRY(prepared("DELETE FROM seen_walls WHERE wall = ?" + byKey));
     return SeenStore(std::move(database), std::move(find), std::move(ofWall), std::move(count),
-                     std::move(write), std::move(forget));
+                     std::move(makeRoom), std::move(write), std::move(forget));
 }
 
 Result<std::optional<Result<Ledger>>> SeenStore::row(const LedgerKey& key) {
@@ -157,12 +163,21 @@ Result<bool> SeenStore::isFull(const std::string& wall) {
     return TRY(count_.step()) && count_.integer(0) >= protocol::maxWallLedgers;
 }
 
+Result<void> SeenStore::makeRoom(const LedgerKey& key) {
+    const ResetAfter reset(makeRoom_);
+    bindKey(makeRoom_, {key.reader, key.wall, SeenLimits{}});
+    TRY(makeRoom_.step());
+    return {};
+}
+
 Result<void> SeenStore::keepOne(const Ledger& ledger) {
     auto times = ledger.times;
     if (times.size() > std::size_t(protocol::maxLedgerTriangles))
         return fail(ErrorKind::badInput, "the wall has more triangles than a record may have",
                     "seen");
-    if (const auto before = TRY(row(ledger.key))) {
+    const auto before = TRY(row(ledger.key));
+    if (!before) TRY(makeRoom(ledger.key));
+    if (before) {
         // Not io, as it is of this reader alone: the others' are kept.
         if (!*before || (*before)->times.size() != times.size())
             return fail(ErrorKind::wrongState, damaged().value().message, "records");

@@ -40,9 +40,11 @@ public:
 
     /// Keeps all in one transaction, which costs one fsync. Of each triangle the longer time
     /// counts, the one that is kept or the new one: of two programs that serve one reader neither
-    /// takes away what the other has kept. One past protocol::maxWallLedgers of its wall or too
-    /// large (badInput), or whose record is damaged (wrongState), is refused, and the others are
-    /// kept; where the transaction fails, none is. Some milliseconds for a million triangles.
+    /// takes away what the other has kept. Of a reader's ledgers of a wall past
+    /// protocol::maxReaderLedgers those go that have changed longest ago, that of the usual limits
+    /// last. One past protocol::maxWallLedgers of its wall or too large (badInput), or whose record
+    /// is damaged (wrongState), is refused, and the others are kept; where the transaction fails,
+    /// none is. Some milliseconds for a million triangles.
     Result<std::vector<Result<void>>> keep(std::span<const Ledger> ledgers);
 
     /// Nothing where there is none. Fails (io) where what is kept is damaged.
@@ -52,15 +54,17 @@ public:
     Result<std::vector<Ledger>> ofWall(const std::string& wall, int most);
 
 private:
-    SeenStore(Database database, Statement find, Statement ofWall, Statement count, Statement write,
-              Statement forget);
+    SeenStore(Database database, Statement find, Statement ofWall, Statement count,
+              Statement makeRoom, Statement write, Statement forget);
     /// Nothing where there is none; an error within where it is damaged.
     Result<std::optional<Result<Ledger>>> row(const LedgerKey& key);
     Result<bool> isFull(const std::string& wall);
+    /// For one ledger more of this reader.
+    Result<void> makeRoom(const LedgerKey& key);
     Result<void> keepOne(const Ledger& ledger);
 
     Database database_;  // first: outlives the statements
-    Statement find_, ofWall_, count_, write_, forget_;
+    Statement find_, ofWall_, count_, makeRoom_, write_, forget_;
 };
 
 }  // namespace haustra::records

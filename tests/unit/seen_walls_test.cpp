@@ -98,6 +98,31 @@ TEST_F(SeenWalls, ManyReadersHaveRoomAndNotAnyNumber) {
     EXPECT_EQ(timesOf(store, {"reader 0", "w", {}}), std::vector<std::uint32_t>({99}));
 }
 
+TEST_F(SeenWalls, OneReaderHasRoomForSoManyChoicesAndItsOldestGoes) {
+    SeenStore store = open();
+    const auto limits = [](int n) { return SeenLimits{1.0, 100 + n}; };
+    std::vector<Ledger> all{ledger("ada", "w", {1}), ledger("bob", "w", {2}, limits(0)),
+                            ledger("ada", "another", {3}, limits(0))};
+    for (int n = 0; n < protocol::maxReaderLedgers - 1; ++n)
+        all.push_back(ledger("ada", "w", {std::uint32_t(n)}, limits(n)));
+    keep(store, all);
+    run("UPDATE seen_walls SET changed_utc = '2020-01-01T00:00:' || (least_ms - 70) || 'Z' "
+        "WHERE least_ms <> 300");
+    run("UPDATE seen_walls SET changed_utc = '2019-01-01T00:00:00Z' WHERE least_ms = 300");
+    keep(store, {ledger("ada", "w", {7}, limits(0))});
+    EXPECT_EQ(timesOf(store, {"ada", "w", limits(1)}), std::vector<std::uint32_t>({1}))
+        << "one that is there already needs no room";
+    keep(store, {ledger("ada", "w", {8}, limits(50))});
+    EXPECT_FALSE(*store.find({"ada", "w", limits(1)})) << "it has changed longest ago";
+    EXPECT_EQ(timesOf(store, {"ada", "w", {}}), std::vector<std::uint32_t>({1}))
+        << "that of the usual limits is the last to go";
+    EXPECT_EQ(timesOf(store, {"ada", "w", limits(0)}), std::vector<std::uint32_t>({7}));
+    EXPECT_EQ(timesOf(store, {"ada", "w", limits(50)}), std::vector<std::uint32_t>({8}));
+    EXPECT_EQ(store.ofWall("w", 100)->size(), std::size_t(protocol::maxReaderLedgers) + 1);
+    EXPECT_EQ(timesOf(store, {"bob", "w", limits(0)}), std::vector<std::uint32_t>({2}));
+    EXPECT_EQ(timesOf(store, {"ada", "another", limits(0)}), std::vector<std::uint32_t>({3}));
+}
+
 TEST_F(SeenWalls, DamageIsToldAndNotOverwritten) {
     {
         SeenStore store = open();
