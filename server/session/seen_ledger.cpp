@@ -82,7 +82,7 @@ private:
 
 }  // namespace
 
-Missed missedOf(const OpenCase& of, std::span<const std::uint8_t> seen, double leastMm2, int most,
+Missed missedOf(const SeenWall& of, std::span<const std::uint8_t> seen, double leastMm2, int most,
                 bool views) {
     const render::WallSight& sight = of.wall->painter->sight();
     Missed missed;
@@ -101,14 +101,14 @@ Missed missedOf(const OpenCase& of, std::span<const std::uint8_t> seen, double l
 }
 
 SeenLedger::SeenLedger(asio::any_io_executor io, PaintThread& painting, RecordsThread& records,
-                       std::shared_ptr<const OpenCase> of, records::LedgerKey key)
+                       const OpenCase& of, records::LedgerKey key)
     : io_(std::move(io)),
       painting_(painting),
       records_(records),
-      caseName_(of->name),
-      scan_(of->scan),
+      caseName_(of.name),
+      scan_(of.scan),
       key_(std::move(key)),
-      work_(std::make_shared<SeenWork>(std::move(of), key_.limits)),
+      work_(std::make_shared<SeenWork>(SeenWall{of.wall, of.centerline}, key_.limits)),
       recorded_(!key_.reader.empty()),
       later_(io_) {}
 
@@ -381,16 +381,14 @@ void SeenLedger::report(double leastMm2, std::weak_ptr<const void> asker,
         });
 }
 
-std::shared_ptr<SeenLedger> SeenLedgers::of(const std::string& reader,
-                                            std::shared_ptr<const OpenCase> of,
+std::shared_ptr<SeenLedger> SeenLedgers::of(const std::string& reader, const OpenCase& of,
                                             const SeenLimits& limits) {
-    records::LedgerKey key{reader, of->wall->content, limits};
+    records::LedgerKey key{reader, of.wall->content, limits};
     std::erase_if(ledgers_, [](const auto& known) { return known.expired(); });
     for (const auto& known : ledgers_)
         if (auto ledger = known.lock(); ledger && !reader.empty() && ledger->key() == key)
             return ledger;
-    auto ledger =
-        std::make_shared<SeenLedger>(io_, painting_, records_, std::move(of), std::move(key));
+    auto ledger = std::make_shared<SeenLedger>(io_, painting_, records_, of, std::move(key));
     ledgers_.push_back(ledger);
     loading_.push_back(ledger);
     ledger->load([this, loaded = ledger.get()] {

@@ -71,24 +71,29 @@ struct SeenFlags {
     double share = 0.0;
 };
 
+/// Of a case what its ledgers need: to hold it keeps nothing on the GPU, where an OpenCase would.
+struct SeenWall {
+    std::shared_ptr<const Wall> wall;
+    Centerline centerline;
+};
+
 /// Finds the patches in flags as WallCoverage::seenTriangles gives them, at most `most`; with
 /// `views`, from where each is seen. Some ten milliseconds, with views some more for each patch.
-Missed missedOf(const OpenCase& of, std::span<const std::uint8_t> seen, double leastMm2, int most,
+Missed missedOf(const SeenWall& of, std::span<const std::uint8_t> seen, double leastMm2, int most,
                 bool views);
 
 /// The paint thread's.
 class SeenWork {
 public:
-    SeenWork(std::shared_ptr<const OpenCase> of, const SeenLimits& limits)
-        : of_(std::move(of)), limits_(limits) {}
+    SeenWork(SeenWall of, const SeenLimits& limits) : of_(std::move(of)), limits_(limits) {}
     render::WallCoverage& coverage() {
-        if (!coverage_) coverage_.emplace(of_->wall->painter->sharedSight(), limits_);
+        if (!coverage_) coverage_.emplace(of_.wall->painter->sharedSight(), limits_);
         return *coverage_;
     }
-    const OpenCase& of() const { return *of_; }
+    const SeenWall& of() const { return of_; }
 
 private:
-    std::shared_ptr<const OpenCase> of_;
+    SeenWall of_;
     SeenLimits limits_;
     std::optional<render::WallCoverage> coverage_;
 };
@@ -100,7 +105,7 @@ class SeenLedger : public std::enable_shared_from_this<SeenLedger> {
 public:
     /// The case has a wall. With an empty reader nothing is kept.
     SeenLedger(asio::any_io_executor io, PaintThread& painting, RecordsThread& records,
-               std::shared_ptr<const OpenCase> of, records::LedgerKey key);
+               const OpenCase& of, records::LedgerKey key);
     ~SeenLedger();
     SeenLedger(const SeenLedger&) = delete;
     SeenLedger& operator=(const SeenLedger&) = delete;
@@ -187,7 +192,7 @@ public:
     SeenLedgers(asio::any_io_executor io, PaintThread& painting, RecordsThread& records)
         : io_(std::move(io)), painting_(painting), records_(records) {}
     /// Of an empty reader each is another. The case has a wall.
-    std::shared_ptr<SeenLedger> of(const std::string& reader, std::shared_ptr<const OpenCase> of,
+    std::shared_ptr<SeenLedger> of(const std::string& reader, const OpenCase& of,
                                    const SeenLimits& limits);
 
 private:

@@ -328,7 +328,7 @@ void Session::makeReading() {
     ++readings_;
     reading_ =
         std::make_shared<WallReading>(io_, services_.painting, case_, kept_, std::move(outlet));
-    reading_->setLedger(services_.ledgers.of(reader_, case_, seenLimits_));
+    reading_->setLedger(services_.ledgers.of(reader_, *case_, seenLimits_));
     reading_->choose({});
     pictures_->setReading(reading_);
     toldShare_ = 0.0;
@@ -417,7 +417,7 @@ void Session::handle(const protocol::SetSeenLimits& message) {
     const auto limits = seenLimitsFrom(message);
     if (!limits) return report(limits.error(), request);
     seenLimits_ = *limits;
-    reading_->setLedger(services_.ledgers.of(reader_, case_, seenLimits_));
+    reading_->setLedger(services_.ledgers.of(reader_, *case_, seenLimits_));
     reading_->ledger().ask(ofLedger<double>(
         request, [request](Session& self, double share) { self.tellSeen(request, share); }));
 }

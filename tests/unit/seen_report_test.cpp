@@ -37,7 +37,7 @@ protected:
         const auto kept = records::SeenStore::open(file_)->keep(all);
         ASSERT_TRUE(kept && std::all_of(kept->begin(), kept->end(),
                                         [](const auto& one) { return one.has_value(); }));
-        ledger_ = ledgers_.of("", of_, {});
+        ledger_ = ledgers_.of("", *of_, {});
     }
     /// What waits on the other threads is done, then one thing of the io thread's, where there is
     /// one.
