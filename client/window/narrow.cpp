@@ -24,11 +24,13 @@ void NarrowButton::resizeEvent(QResizeEvent* event) {
     fit();
 }
 
-// A button's own hint is of the words that it shows now.
+// A button's own hint is of the words that it shows now, by their size, which may be some pixels
+// off how far they advance.
 QSize NarrowButton::hintFor(const QString& words) const {
+    constexpr int slack = 4;
     const QSize shown = QToolButton::sizeHint();
     return {shown.width() + fontMetrics().horizontalAdvance(words) -
-                fontMetrics().horizontalAdvance(text()),
+                fontMetrics().horizontalAdvance(text()) + slack,
             shown.height()};
 }
 
