@@ -15,7 +15,6 @@
 #include <array>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <thread>
 

@@ -12,7 +12,7 @@ using store::Attributes;
 
 // Raise one whenever the scan changes for the same files. A case that lacks a product which the
 // import has come to make gets it as the series is read again, and keeps all else that it has.
-constexpr int dicomVersion = 2, niftiVersion = 3;
+constexpr int dicomVersion = 3, niftiVersion = 3;
 
 }  // namespace
 

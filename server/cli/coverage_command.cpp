@@ -36,7 +36,7 @@ namespace product = store::product;
 using namespace haustra::coverage;
 
 // Raise it whenever the product changes for the same input and options.
-constexpr int coverageVersion = 1;
+constexpr int coverageVersion = 2;
 
 struct CoverageArguments {
     fs::path store, report, pictures;

@@ -150,7 +150,8 @@ void addEdits(CLI::App& command, pipeline::PrepareOptions& options) {
         command
             .add_option("--lumen", options.lumenMask,
                         "A segmentation of the lumen made elsewhere, on the series' grid: 0 "
-                        "outside, 2 tagged, else air; it takes the place of the segmentation "
+                        "outside, 2 tagged, 4 fluid without tagging, else air; it takes the place "
+                        "of the segmentation "
                         "stage. Without SERIES it is the case's own scan's, or stands alone: then "
                         "nothing is cleansed, and the surface is the mask's")
             ->type_name("MASK.nii.gz");

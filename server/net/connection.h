@@ -36,6 +36,8 @@ public:
     void start(std::function<bool()> admit, std::function<void()> closed);
     /// Tells the client that the server stops, and ends.
     void stop();
+    /// Closes the socket, whatever is still to be sent.
+    void abort();
 
 private:
     using Bytes = std::vector<std::uint8_t>;
@@ -51,7 +53,6 @@ private:
     void send(Bytes bytes, bool picture);
     void expectWithin(asio::steady_timer& deadline, std::chrono::milliseconds patience);
     bool mustPause() const;
-    void abort();
 
     asio::ssl::stream<asio::ip::tcp::socket> stream_;
     const session::Services& services_;

@@ -110,7 +110,7 @@ Result<void> serve(const Arguments& arguments) {
             arguments.portFile.has_parent_path() ? arguments.portFile.parent_path() : fs::path(".");
         auto written = haustra::store::writeDurably(folder, arguments.portFile.filename(),
                                                     {std::as_bytes(std::span(text))});
-        if (!written) {  // it names the file that would have been renamed
+        if (!written) {  // as it was given
             written.error().place = arguments.portFile.string();
             return written;
         }

@@ -207,7 +207,7 @@ void Server::Impl::serve(tcp::socket socket) {
         if (strangers.empty()) return;
         // Who has said nothing for longest makes room for another.
         const auto oldest = strangers.extract(strangers.begin());
-        oldest.mapped()->stop();
+        oldest.mapped()->abort();
     }
     const session::SessionId id = ++lastId;
     const auto connection =

@@ -30,8 +30,8 @@ public:
     /// The ledger has taken in as `step` what the TellShown of this number, which grows, has told.
     void given(std::shared_ptr<SeenLedger> ledger, std::uint64_t step, std::uint64_t number);
 
-    /// What the TellShown of this number and all before it has told is kept. Once something cannot
-    /// be, it grows no more.
+    /// What the TellShown of this number and all before it has told is kept, but for what the
+    /// client has been told cannot be.
     std::uint64_t number() const { return number_; }
 
 private:
@@ -41,13 +41,12 @@ private:
         bool isKept = false, hasFailed = false;
     };
     void heard(const SeenLedger& of, const SeenLedger::Told& told);
-    void giveUpFrom(std::deque<Step>::iterator first);
+    void raise();
 
     Outlet outlet_;
     const SeenLedger* read_ = nullptr;
     std::deque<Step> steps_;  // in the order of their numbers, the first is not kept yet
     std::uint64_t number_ = 0;
-    bool keeps_ = true;  // all that was told until now is kept, or is going to be
 };
 
 }  // namespace haustra::session

@@ -340,9 +340,12 @@ void Session::makeKeptShown() {
     outlet.rose = [weak] {
         const auto session = weak.lock();
         if (!session || !session->reading_) return;
-        session->reading_->ledger().ask([weak](Result<double> share) {
+        SeenLedger& ledger = session->reading_->ledger();
+        ledger.ask([weak, of = ledger.weak_from_this()](Result<double> share) {
             const auto self = weak.lock();
-            if (self && share) self->heardSeen(*share);
+            const bool isRead =
+                self && self->reading_ && &self->reading_->ledger() == of.lock().get();
+            if (isRead && share) self->heardSeen(*share);
         });
     };
     outlet.notWritten = [weak](const Error& error) {
@@ -471,8 +474,9 @@ void Session::reportNext() {
     next.of->report(
         next.leastMm2, weak_from_this(),
         [weak = weak_from_this(), told = next.told](Result<std::vector<ReaderSeen>> readers) {
-            told(std::move(readers));
+            // First: what throws after it is the answer's own fault.
             if (const auto self = weak.lock()) self->reportNext();
+            told(std::move(readers));
         });
 }
 

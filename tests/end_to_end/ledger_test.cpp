@@ -542,7 +542,6 @@ TEST_F(LedgerWords, OnlyWhatHasBeenSentCanHaveBeenOnScreen) {
     EXPECT_EQ(share(*client), after);
 }
 
-// kept() is of a number and all before it.
 TEST_F(LedgerWords, WhatHasNoRoomIsNeverToldAsKept) {
     const TemporaryFolder folder;
     makeFlatStore(folder.path(), tube());
@@ -570,13 +569,18 @@ TEST_F(LedgerWords, WhatHasNoRoomIsNeverToldAsKept) {
     limits.mutable_set_seen_limits()->set_request(5);
     limits.mutable_set_seen_limits()->mutable_limits()->set_pixels_per_mm(50.0);
     client->send(limits);
+    const auto byOthers = awaited(*client, [](const auto& answer) {
+        return answer.has_wall_seen() && answer.wall_seen().request() == 5;
+    });
+    EXPECT_TRUE(byOthers.wall_seen().recorded());
+    EXPECT_EQ(byOthers.wall_seen().kept(), 0u);
     client->send(shown(3, picture, 1));
     const auto told = awaited(*client, [](const auto& answer) {
         return answer.has_wall_seen() && answer.wall_seen().request() == 0 &&
                answer.wall_seen().limits().pixels_per_mm() == 50.0;
     });
     EXPECT_TRUE(told.wall_seen().recorded());
-    EXPECT_EQ(told.wall_seen().kept(), 0u);
+    EXPECT_EQ(told.wall_seen().kept(), 3u) << "what was lost was told, and holds nothing up";
 }
 
 // The last writing of a case that is left fails: later numbers wait for it, until another case has
@@ -599,9 +603,19 @@ TEST_F(LedgerWords, WhatALeftCaseWasToldIsWaitedFor) {
         run("BEGIN IMMEDIATE");
         client->send(shown(1, pictureAt(*client, 10.0), 60'000));
         EXPECT_GT(share(*client), 0.0);
-        ASSERT_TRUE(client->openCase(leavesAnother ? "scan" : smallCaseName)->has_case_opened());
-        const auto failed = awaited(*client, [](const auto& answer) { return answer.has_error(); });
-        EXPECT_EQ(failed.error().code(), protocol::ErrorReport::INTERNAL);
+        // The lock may outlast SQLite's patience before the case is open, or after.
+        bool isOpen = false, hasFailed = false;
+        const auto first = client->openCase(leavesAnother ? "scan" : smallCaseName);
+        const auto take = [&](const protocol::ServerMessage& answer) {
+            isOpen |= answer.has_case_opened();
+            hasFailed |= answer.has_error();
+            if (answer.has_error())
+                EXPECT_EQ(answer.error().code(), protocol::ErrorReport::INTERNAL);
+            return isOpen && hasFailed;
+        };
+        ASSERT_TRUE(first);
+        if (!take(*first)) awaited(*client, take);
+        ASSERT_TRUE(isOpen && hasFailed);
         if (leavesAnother) {
             ASSERT_TRUE(client->openCase(smallCaseName)->has_case_opened());
         }
@@ -609,10 +623,9 @@ TEST_F(LedgerWords, WhatALeftCaseWasToldIsWaitedFor) {
         EXPECT_EQ(seen(*client).kept(), 0u);
         run("ROLLBACK");
         const auto told = awaited(*client, [](const auto& answer) {
-            return answer.has_wall_seen() && answer.wall_seen().request() == 0;
+            return answer.has_wall_seen() && answer.wall_seen().kept() == 2;
         });
         EXPECT_TRUE(told.wall_seen().recorded());
-        EXPECT_EQ(told.wall_seen().kept(), leavesAnother ? 0u : 2u);
         // What it says has been seen is on the disk.
         const auto kept = records::SeenStore::open(records)->find({"leaver", wall, {}}).value();
         ASSERT_TRUE(kept);

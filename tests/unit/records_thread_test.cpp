@@ -20,8 +20,12 @@ protected:
         {
             RecordsThread records(records::BookmarkStore::open(file).value(),
                                   records::SeenStore::open(file).value(), store_);
-            std::promise<void> all;
-            records.findSeen({}, [&](const auto&) { all.get_future().wait(); });
+            std::promise<void> busy, all;
+            records.findSeen({}, [&](const auto&) {
+                busy.set_value();
+                all.get_future().wait();
+            });
+            busy.get_future().wait();
             requests(records);
             all.set_value();
         }
