@@ -42,7 +42,7 @@ struct ColonPiece {
     ColonPart part = ColonPart::rectum;
     glm::dvec3 centreMm{0.0};  ///< patient, LPS: middle of the largest ball inside
     double radiusMm = 0.0;     ///< of that ball
-    double lengthMm = 0.0;     ///< of the way through it, by that middle
+    double lengthMm = 0.0;     ///< of the way through it, from mouth to mouth by that middle
     double gasMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;
     /// As a tube of that calibre: more than the way, as haustra are wider than what lies between
     /// their folds.

@@ -134,13 +134,30 @@ private:
         return leadsOn == intoNext ? path.pointsMm.back() : path.pointsMm.front();
     }
 
-    // From mouth to mouth by the middle of its ball; of the first and the last node, from the
-    // ball's rim and to it.
+    // The place of a node's piece that lies farthest from a point.
+    glm::dvec3 farthestMm(int node, glm::dvec3 fromMm) const {
+        const Grid& grid = cut_.pieceAt.grid();
+        const auto piece = graph_.pieceOf[std::size_t(node)];
+        glm::dvec3 farthest = fromMm;
+        for (std::size_t v = 0; v < grid.voxelCount(); ++v) {
+            if (cut_.pieceAt[v] != piece) continue;
+            const glm::dvec3 mm = grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(v)));
+            if (glm::distance(mm, fromMm) > glm::distance(farthest, fromMm)) farthest = mm;
+        }
+        return farthest;
+    }
+
+    // From mouth to mouth by the middle of its ball; of the first and the last node, to where it is
+    // farthest from its one mouth.
     double wayThrough(std::size_t n) const {
-        const ChainNode& node = graph_.graph.nodes[std::size_t(chain_.nodes[n])];
+        const int node = chain_.nodes[n];
+        const ChainNode& at = graph_.graph.nodes[std::size_t(node)];
         const bool isFirst = n == 0, isLast = n + 1 == chain_.nodes.size();
-        return (isFirst ? node.radiusMm : glm::distance(mouthMm(n - 1, true), node.centreMm)) +
-               (isLast ? node.radiusMm : glm::distance(node.centreMm, mouthMm(n, false)));
+        if (isFirst && isLast) return 2.0 * at.radiusMm;
+        const glm::dvec3 from =
+                             isFirst ? farthestMm(node, mouthMm(n, false)) : mouthMm(n - 1, true),
+                         to = isLast ? farthestMm(node, from) : mouthMm(n, false);
+        return glm::distance(from, at.centreMm) + glm::distance(at.centreMm, to);
     }
 
     const TubePiece& pieceOf(int node) const {
