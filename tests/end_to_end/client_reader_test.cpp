@@ -354,6 +354,7 @@ TEST_F(ClientReader, ABookmarkOfFreeFlightLiesWhereTheCameraHasGone) {
     flight.goTo(400.0);
     reader_->addBookmark("on the centerline");
     flight.goTo(100.0);
+    flight.flyFreely();
     flight.moveFreely({0.0, 0.0, 150.0});
     ASSERT_TRUE(flight.isFree());
     const double arc = flight.placeArcMm();

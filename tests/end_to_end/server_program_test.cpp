@@ -18,13 +18,14 @@ TEST(Server, FullIsSaidAndStoppingIsClean) {
     const TemporaryFolder folder;
     makeSmallStore(folder.path());
     ServerProcess server(folder.path(), {"--max-sessions", "1"});
-    EXPECT_NE(server.output().find("certificate SHA-256 "), std::string::npos);
     const auto key = folder.path() / "tls" / "key.pem";
     EXPECT_EQ(std::filesystem::status(key).permissions(), std::filesystem::perms(0600));
     const std::string certificate = fileContent(folder.path() / "tls" / "certificate.pem");
 
     TestClient first(server.port());
     ASSERT_TRUE(first.hello());
+    // It is printed after the port is told, and before anybody is answered.
+    EXPECT_NE(server.output().find("certificate SHA-256 "), std::string::npos);
     {
         TestClient second(server.port());
         const auto refused = second.hello();

@@ -95,6 +95,7 @@ TEST_F(KnownServersTest, PinsOnFirstUseAcceptsTheSameAndRefusesAnother) {
 
 // Whoever took that for a first meeting would trust anybody, and write over the other pins.
 TEST_F(KnownServersTest, AFileThatCannotBeLookedForIsNoFirstMeeting) {
+    std::filesystem::create_directories(file().parent_path());
     std::filesystem::create_symlink(file(), file());  // leads nowhere, but is there
     const auto trust = checkPin({file(), {}}, "a:1", one);
     ASSERT_FALSE(trust);
