@@ -15,7 +15,8 @@ std::optional<std::filesystem::path> userFolder(const char* variable, const char
 
 /// Writes the file with mode 0600, in one step: whoever reads it sees the old text or the new. When
 /// this returns without an error, the new one survives a power cut. Makes the folder, readable by
-/// its owner only. Where it fails, either stands, whole.
+/// its owner only. Where it fails, the old file stands or the new one,
+/// whole.
 Result<void> writePrivateFile(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace haustra::link

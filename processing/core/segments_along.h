@@ -9,9 +9,10 @@
 
 namespace haustra {
 
+/// From this arc on the centerline is in the segment, to the next start; what lies before the first
+/// start is in its segment, too.
 struct SegmentStart {
-    double arcMm =
-        0.0;  ///< from here on, seen from the rectum; the first one's counts for all before
+    double arcMm = 0.0;
     ColonSegment segment = ColonSegment::rectum;
 };
 
