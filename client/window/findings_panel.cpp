@@ -77,6 +77,13 @@ QString nameOfKind(const std::string& kind) {
     return text(kind);
 }
 
+QString shapeOf(const Finding& finding) {
+    const QString mm = decimal(finding.heightMm);
+    return finding.kind == "annular"
+               ? FindingsPanel::tr("all around, %1 mm thick").arg(mm)
+               : FindingsPanel::tr("%1, %2 mm high").arg(nameOfKind(finding.kind), mm);
+}
+
 /// A mode is chosen from the list that opens: neither the wheel, which scrolls the panel, nor a key
 /// that is meant for the flight shows findings before the first reading is done.
 class ModeBox : public QComboBox {
@@ -316,10 +323,7 @@ void FindingsPanel::fill() {
         for (const int column : {0, 1, 3, 4})
             item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
         item->setData(0, numberRole, one.number);
-        item->setToolTip(
-            2,
-            toolTipOf(
-                tr("%1, %2 mm high").arg(nameOfKind(finding.kind)).arg(decimal(finding.heightMm))));
+        item->setToolTip(2, toolTipOf(shapeOf(finding)));
         if (!one.candidate) continue;
         QFont slanted = list_->font();
         slanted.setItalic(true);

@@ -1,5 +1,6 @@
 #include "cad/detect.h"
 
+#include "cad/annular_wall.h"
 #include "cad/examined_colon.h"
 #include "cad/masses.h"
 #include "cad/places.h"
@@ -229,6 +230,21 @@ void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
             untaggedMm2));
 }
 
+// Those that may be a tumour are added to the findings, longer ones told by a warning alone.
+void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, int threads,
+                      std::vector<Finding>& made, std::vector<std::string>& warnings) {
+    const auto segments = segmentsAlong(colon.centerline, colon.pieces);
+    for (const AnnularWall& wall : annularWalls(colon, evidence, threads)) {
+        const bool tumour = wall.lengthMm() <= longestTumourMm;
+        warnings.push_back(printed(
+            "the wall is %.0f mm thick all around from %.0f to %.0f mm: %s", wall.thicknessMm,
+            wall.fromMm, wall.toMm,
+            tumour ? "it may be a cancer that leaves a channel, or a segment that is contracted"
+                   : "it may be a segment that is inflamed or contracted, or a long tumour"));
+        if (tumour) made.push_back(findingOf(wall, colon, evidence, segments));
+    }
+}
+
 void warnOfMasses(Findings& findings) {
     for (const MassOfFindings& mass : massesOf(findings.findings)) {
         const Finding& first = findings.findings[mass.findings.front()];
@@ -354,16 +370,18 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                     "HU or more after smoothing to 1 mm: by noise, by contrast in its vessels, or "
                     "by residue of weak tagging",
                     statistics.noiseHu));
+    std::vector<Finding> made;
+    tellAnnularWalls(colon, evidence, threads, made, findings.warnings);
     std::vector<const Candidate*> told;
     for (const Candidate& candidate : candidates)
         if (candidate.probability >= std::min(leastProbability, model.operatingPoint))
             told.push_back(&candidate);
-    if (told.size() > std::size_t(maxFindings)) {
-        told.resize(std::size_t(maxFindings));
+    if (const std::size_t room = std::size_t(maxFindings) - made.size(); told.size() > room) {
+        told.resize(room);
         findings.warnings.push_back(printed(
             "more than %d places may be polyps; the least probable are left out", maxFindings));
     }
-    std::vector<Finding> made = describe(colon, evidence, told, threads);
+    std::ranges::move(describe(colon, evidence, told, threads), std::back_inserter(made));
     for (Finding& finding : made)
         (finding.score >= model.operatingPoint ? findings.findings : findings.candidates)
             .push_back(std::move(finding));

@@ -23,18 +23,6 @@ double halfVoxelMm(const Grid& grid) {
     return 0.5 * std::min({spacing.x, spacing.y, spacing.z});
 }
 
-std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& grid) {
-    std::vector<VoxelRun> runs;
-    for (const std::size_t index : voxels) {
-        const glm::ivec3 voxel = grid.voxelAt(index);
-        if (!runs.empty() && runs.back().first + glm::ivec3(runs.back().count, 0, 0) == voxel)
-            ++runs.back().count;
-        else
-            runs.push_back({voxel, 1});
-    }
-    return runs;
-}
-
 // The voxels that hold what is half a voxel beneath a patch: of a body that holds no voxel's
 // centre. Features are measured in them, of the phantoms that the built-in model has learnt from
 // too, so that a change here asks for another model.
@@ -207,6 +195,18 @@ double widthAcross(const WallSamples& wall, std::span<const std::uint32_t> patch
 
 }  // namespace
 
+std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& grid) {
+    std::vector<VoxelRun> runs;
+    for (const std::size_t index : voxels) {
+        const glm::ivec3 voxel = grid.voxelAt(index);
+        if (!runs.empty() && runs.back().first + glm::ivec3(runs.back().count, 0, 0) == voxel)
+            ++runs.back().count;
+        else
+            runs.push_back({voxel, 1});
+    }
+    return runs;
+}
+
 bool standsOnStalk(const Lesion& lesion) {
     constexpr double neckShare = 0.7;
     const double base = std::sqrt(4.0 * lesion.baseMm2 / std::numbers::pi);
@@ -302,12 +302,11 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const G
     return lesion;
 }
 
-std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
-                                     const Lesion& lesion) {
-    const Grid& grid = colon.cleansed.grid();
+std::set<std::size_t> voxelsBehind(const WallEvidence& evidence,
+                                   std::span<const std::uint32_t> samples, const Grid& grid) {
     const double depth = halfVoxelMm(grid);
     std::set<std::size_t> voxels;
-    for (const std::uint32_t v : lesion.patch.samples) {
+    for (const std::uint32_t v : samples) {
         const glm::dvec3 wall = evidence.samples.mesh.vertices[v],
                          intoWall(evidence.shapes[v].intoWall), beneath = wall + depth * intoWall;
         const glm::dvec3 at = grid.voxelFromPatientPoint(beneath);
@@ -325,6 +324,13 @@ std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvide
         }
         if (greatest > 0.0) voxels.insert(most);
     }
+    return voxels;
+}
+
+std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
+                                     const Lesion& lesion) {
+    const Grid& grid = colon.cleansed.grid();
+    std::set<std::size_t> voxels = voxelsBehind(evidence, lesion.patch.samples, grid);
     for (const VoxelRun& run : lesion.voxels)
         for (int i = 0; i < run.count; ++i) {
             const glm::ivec3 voxel = run.first + glm::ivec3(i, 0, 0);

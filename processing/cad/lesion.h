@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -74,14 +75,20 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
 std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const Grid& grid,
                               SampleNumbers& numbers);
 
+/// One voxel of the scan beneath each of the samples, so that a picture of the wall shows them: of
+/// the eight voxels around the point half a voxel beneath, it is the one of the greatest weight
+/// there whose centre lies behind the wall. By their indices.
+std::set<std::size_t> voxelsBehind(const WallEvidence& evidence,
+                                   std::span<const std::uint32_t> samples, const Grid& grid);
+
 /// What a finding tells as its tissue, in memory order: the lesion's voxels that are no gas (a wide
-/// one's film lies in the lumen), and one voxel more beneath each sample of the patch, since a body
-/// thinner than voxels holds few of their centres. Of the eight voxels around the point half a
-/// voxel beneath the sample, it is the one of the greatest weight there whose centre lies behind
-/// the wall.
+/// one's film lies in the lumen), and voxelsBehind() its patch, since a body thinner than voxels
+/// holds few of their centres.
 std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvidence& evidence,
                                      const Lesion& lesion);
 
+/// Voxels of a grid, by their indices.
+std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& grid);
 /// Runs of the voxels whose centres lie within a closed mesh (even–odd along i).
 std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid);
 

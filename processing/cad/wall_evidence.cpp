@@ -144,7 +144,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
                 evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
         },
         [&] {
-            evidence.smooth = smoothed(shapeSigmaMm, biopsyReachMm);
+            evidence.smooth = smoothed(shapeSigmaMm, std::max(biopsyReachMm, deepestWallMm + 2.0));
             broad = smoothed(broadSigmaMm, broadReachMm);
         },
         [&] {

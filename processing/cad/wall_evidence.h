@@ -79,6 +79,8 @@ struct WallEvidence {
     TransferFunction transferFunction;  ///< that the rays were cast by
 };
 
+/// How deep the wall is looked into where it is thick all around (annular_wall.h).
+inline constexpr double deepestWallMm = 30.0;
 /// How far from the wall biopsy rays look.
 inline constexpr double biopsyReachMm = biopsyStepMm * biopsySteps + 2.0;
 

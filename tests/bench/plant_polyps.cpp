@@ -3,6 +3,7 @@
 // found among a patient's own folds, stool and noise. The same seed plants the same polyps.
 // `--help` tells the options.
 #include "cleansing/pseudo_enhancement.h"
+#include "core/centerline.h"
 #include "core/crop.h"
 #include "core/ct_scan.h"
 #include "core/findings.h"
@@ -54,7 +55,7 @@ struct PlantOptions {
     std::string store, name;
     fs::path out;
     std::uint64_t seed = 1;
-    int count = 20, masses = 0;
+    int count = 20, masses = 0, rings = 0;
     std::vector<double> tissueHu = {20.0, 60.0};  ///< least, most
     double noiseSdHu = 0.0;
 };
@@ -64,6 +65,7 @@ struct Patient {
     std::string scanKey;
     Volume<std::uint8_t> segmentation, lumen;  ///< LumenLabel
     TriMesh surface;
+    Centerline centerline;
     TissueModel tissue;
     std::vector<glm::dvec3> findingsMm;
 };
@@ -72,8 +74,8 @@ Result<Patient> readPatient(const std::string& root, const std::string& name) {
     namespace product = store::product;
     const auto store = TRY(store::CaseStore::open(root, false));
     const auto source = TRY(store.openCase(name));
-    for (const char* needed :
-         {product::ct, product::segmentation, product::lumen, product::surface})
+    for (const char* needed : {product::ct, product::segmentation, product::lumen, product::surface,
+                               product::centerline})
         if (!source.find(needed))
             return fail(
                 ErrorKind::notFound,
@@ -88,6 +90,7 @@ Result<Patient> readPatient(const std::string& root, const std::string& name) {
     patient.segmentation = TRY(source.readVolume<std::uint8_t>(product::segmentation));
     patient.lumen = TRY(source.readVolume<std::uint8_t>(product::lumen));
     patient.surface = TRY(source.readMesh(product::surface));
+    patient.centerline = TRY(source.readCenterline(product::centerline));
     patient.tissue =
         TRY(source.attributes(product::segmentation).and_then(pipeline::tissueModelOf));
     if (!source.find(product::findings)) {
@@ -100,8 +103,9 @@ Result<Patient> readPatient(const std::string& root, const std::string& name) {
     return patient;
 }
 
-enum class Kind { sessile, flat, pedunculated, mass };
-constexpr std::array<const char*, 4> kindNames = {"sessile", "flat", "pedunculated", "mass"};
+enum class Kind { sessile, flat, pedunculated, mass, ring };
+constexpr std::array<const char*, 5> kindNames = {"sessile", "flat", "pedunculated", "mass",
+                                                  "annular"};
 
 /// One of the domes that a mass is grown together from.
 struct Dome {
@@ -121,6 +125,7 @@ struct Polyp {
     double stalkRadiusMm = 0.0;
     double headShare = 1.0;   ///< the head's length along the stalk, of its diameter
     std::vector<Dome> domes;  ///< of a mass
+    double channelMm = 0.0;   ///< radius of what a ring leaves open
     double tissueHu = 0.0;
     std::uint64_t textureSeed = 0;
 
@@ -183,6 +188,17 @@ Polyp drawMass(Random& random, const std::vector<double>& tissueHu) {
     mass.tissueHu = random.uniform(tissueHu[0], tissueHu[1]);
     mass.textureSeed = random.bits();
     return mass;
+}
+
+/// A cancer that goes all around; its diameter is its length along the colon. Its height is found
+/// where it is planted.
+Polyp drawRing(Random& random, const std::vector<double>& tissueHu) {
+    Polyp ring = drawPolyp(random, tissueHu);
+    ring.kind = Kind::ring;
+    ring.diameterMm = random.uniform(20.0, 50.0);
+    ring.channelMm = random.uniform(5.0, 10.0);
+    ring.edgeMm = random.uniform(2.0, 6.0);
+    return ring;
 }
 
 double smoothMin(double a, double b, double k) {
@@ -285,6 +301,20 @@ struct Surroundings {
         return trilinear(lumenMm, lumenMm.grid().voxelFromPatientPoint(patientMm));
     }
 };
+
+/// Whether a place is a ring's: `alongMm` from its middle along the colon, `outMm` off the axis.
+/// Its channel is uneven, and opens over its edges.
+bool ringHolds(const Polyp& ring, double alongMm, double outMm, glm::dvec3 around) {
+    const double edge = std::abs(alongMm) - (ring.radiusMm() - ring.edgeMm);
+    if (edge > ring.edgeMm) return false;
+    const double angle = std::atan2(around.y, around.x);
+    const double uneven = 1.0 + lobe2 * std::cos(3.0 * angle + ring.lobes[0]) +
+                          lobe3 * std::sin(alongMm / 3.0 + ring.lobes[1]);
+    constexpr double openMm = 40.0;
+    return outMm >
+           ring.channelMm * uneven +
+               openMm * (1.0 - std::sqrt(1.0 - std::pow(std::max(0.0, edge) / ring.edgeMm, 2.0)));
+}
 
 /// None near the scan's end, or where the lumen is not open.
 std::optional<Surroundings> surroundingsOf(const Volume<std::uint8_t>& lumen, glm::dvec3 atMm,
@@ -440,6 +470,24 @@ public:
         return {};
     }
 
+    /// A ring where the lumen is wide all along it.
+    std::optional<GrowthTruth> plantRing(Polyp ring, Random& random) {
+        const auto& axis = patient_.centerline.points;
+        constexpr double leastThickMm = 4.0, fromEndsMm = 60.0;
+        for (int n = 0; n < placesPerPolyp; ++n) {
+            const double arcMm = random.uniform(
+                fromEndsMm, std::max(fromEndsMm, patient_.centerline.lengthMm() - fromEndsMm));
+            const glm::dvec3 atMm = poseAtArc(patient_.centerline, arcMm).point.positionMm;
+            const bool wide = std::ranges::all_of(axis, [&](const CenterlinePoint& point) {
+                return std::abs(point.arcMm - arcMm) > ring.radiusMm() ||
+                       (!point.gap && point.radiusMm > ring.channelMm + leastThickMm);
+            });
+            if (!wide || isTaken(atMm, ring.radiusMm())) continue;
+            if (const auto truth = plantRingAt(ring, arcMm)) return truth;
+        }
+        return {};
+    }
+
 private:
     struct Taken {
         glm::dvec3 atMm;
@@ -476,6 +524,41 @@ private:
         phantom::blur(body, glm::dvec3(fwhmPerSigma * scannerSigmaMm), 0);
         fill(polyp, around->box, body);
         taken_.push_back({atMm, polyp.radiusMm()});
+        return truth;
+    }
+
+    std::optional<GrowthTruth> plantRingAt(const Polyp& ring, double arcMm) {
+        const CenterlinePose pose = poseAtArc(patient_.centerline, arcMm);
+        const double reachMm = ring.radiusMm() + 30.0;
+        const auto around = surroundingsOf(patient_.lumen, pose.point.positionMm, reachMm);
+        if (!around) return {};
+        auto axis = patient_.centerline.points;  // that may be nearest to a place in there
+        std::erase_if(axis, [&](const CenterlinePoint& point) {
+            return glm::distance(point.positionMm, pose.point.positionMm) > 2.0 * reachMm;
+        });
+        const Foot foot = footAt(pose.point.positionMm, pose.tangent);
+        const Grid& grid = around->lumenMm.grid();
+        Volume<float> body(grid, 0.0f);
+        const auto share = body.writable();
+        parallelFor(grid.voxelCount(), 1 << 16, 0, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                if (around->lumenMm[n] <= -deepestMm) continue;
+                const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
+                // Another loop's lumen is nearest to another part of the axis.
+                const auto nearest = std::ranges::min_element(axis, {}, [&](const auto& point) {
+                    return glm::distance(point.positionMm, p);
+                });
+                share[n] = ringHolds(ring, nearest->arcMm - arcMm,
+                                     glm::distance(nearest->positionMm, p), foot.ofPatient(p));
+            }
+        });
+        GrowthTruth truth = truthOf(ring, foot, *around, body);
+        truth.positionMm = pose.point.positionMm;
+        truth.wallMm = foot.patientOf({ring.channelMm, 0, 0});
+        truth.heightMm = pose.point.radiusMm - ring.channelMm;
+        phantom::blur(body, glm::dvec3(fwhmPerSigma * scannerSigmaMm), 0);
+        fill(ring, around->box, body);
+        taken_.push_back({pose.point.positionMm, ring.radiusMm()});
         return truth;
     }
 
@@ -543,10 +626,12 @@ std::vector<GrowthTruth> plantAll(Planter& planter, const PlantOptions& options)
     Random random(options.seed, 80);
     std::vector<GrowthTruth> truths;
     for (int drawn = 0; drawn < 2 * options.count && int(truths.size()) < options.count; ++drawn) {
-        const Polyp polyp = int(truths.size()) < options.masses
-                                ? drawMass(random, options.tissueHu)
-                                : drawPolyp(random, options.tissueHu);
-        const auto truth = planter.plant(polyp, random);
+        const int wide = options.masses + options.rings;
+        const Polyp polyp = int(truths.size()) < options.masses ? drawMass(random, options.tissueHu)
+                            : int(truths.size()) < wide         ? drawRing(random, options.tissueHu)
+                                                        : drawPolyp(random, options.tissueHu);
+        const auto truth = polyp.kind == Kind::ring ? planter.plantRing(polyp, random)
+                                                    : planter.plant(polyp, random);
         if (!truth) continue;
         fmt::print("{:<12} {:4.1f} mm wide, {:4.1f} mm high, {:3.0f} HU, {:3.0f} % submerged\n",
                    truth->kind, truth->diameterMm, truth->heightMm, polyp.tissueHu,
@@ -587,9 +672,9 @@ Result<void> run(const PlantOptions& options) {
     dicom::WriteOptions writing;
     writing.patientName = "HAUSTRA^PLANTED", writing.patientId = "PLANTED";
     writing.seriesDescription = fmt::format("Planted polyps {}", options.seed);
-    writing.uidSeed =
-        fmt::format("planted {} {} {} {} {} {} {}", patient.scanKey, options.seed, options.count,
-                    options.masses, options.tissueHu[0], options.tissueHu[1], options.noiseSdHu);
+    writing.uidSeed = fmt::format("planted {} {} {} {} {} {} {} {}", patient.scanKey, options.seed,
+                                  options.count, options.masses, options.rings, options.tissueHu[0],
+                                  options.tissueHu[1], options.noiseSdHu);
     const CtScan scan{withNoise(planter.hu(), {options.seed, options.noiseSdHu, grainMm}),
                       patient.scan.position};
     return dicom::writeSeries(series, scan, writing).and_then([&] {
@@ -614,6 +699,12 @@ int main(int count, char** arguments) {
     program
         .add_option("--masses", options.masses,
                     "How many of these are masses of 20 to 40 mm; they come first")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    program
+        .add_option("--rings", options.rings,
+                    "How many are cancers that go all around and leave a channel, 20 to 50 mm "
+                    "long; they come after the masses")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
     program.add_option("--hu", options.tissueHu, "Least and most of a polyp's tissue: LO,HI")

@@ -1188,6 +1188,10 @@
         <source>Show the findings all the same, in this and the next cases?</source>
         <translation>Die Befunde trotzdem zeigen, in diesem und den nächsten Fällen?</translation>
     </message>
+    <message>
+        <source>all around, %1 mm thick</source>
+        <translation>ringsum, %1 mm dick</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::FlatZoomPane</name>

@@ -1,0 +1,216 @@
+#include "cad/annular_wall.h"
+
+#include "cad/lesion.h"
+#include "core/parallel.h"
+#include "core/quantile.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <span>
+
+namespace haustra::cad {
+namespace {
+
+constexpr double thickMm = 6.0, leastLengthMm = 12.0, analCanalMm = 40.0;
+constexpr double sectionMm = 4.0;
+constexpr std::size_t sectors = 12, leastJudged = 6;
+constexpr double leastThickShare = 5.0 / 6.0;
+// One ray in so many: 0.7 mm² of wall each.
+constexpr std::size_t stride = 8, leastRays = 3;
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+
+// Where each of the samples is along the colon and around it, by the map's triangles, which are
+// smaller than what is asked for here.
+class SectionsOfWall {
+public:
+    SectionsOfWall(const PreparedColon& colon, const WallSamples& samples)
+        : samples_(samples), ofTriangle_(colon.surface.triangles.size()) {
+        const FlatMap& map = colon.flat;
+        for (std::size_t t = 0; t < map.surface.triangles.size(); ++t) {
+            const glm::ivec3 corners = map.surface.triangles[t];
+            Place place;
+            for (int c = 0; c < 3; ++c) {
+                const auto v = std::size_t(corners[c]);
+                place.arcMm += map.cameras[std::size_t(map.camera[v])].arcMm / 3.0;
+                place.turn += map.flat[v].x / 3.0;
+            }
+            place.turn -= std::floor(place.turn);
+            ofTriangle_[std::size_t(map.sourceTriangle[t])] = place;
+            sections_ = std::max(sections_, sectionAt(place.arcMm) + 1);
+        }
+    }
+
+    std::size_t sections() const { return sections_; }
+    std::size_t section(std::uint32_t sample) const { return sectionAt(of(sample).arcMm); }
+    std::size_t sector(std::uint32_t sample) const {
+        return std::min(std::size_t(of(sample).turn * double(sectors)), sectors - 1);
+    }
+
+private:
+    struct Place {
+        double arcMm = 0.0, turn = 0.0;
+    };
+    static std::size_t sectionAt(double arcMm) {
+        return std::size_t(std::max(0.0, arcMm) / sectionMm);
+    }
+    const Place& of(std::uint32_t sample) const {
+        const std::uint32_t triangle = samples_.triangles[samples_.beginTriangles[sample]];
+        return ofTriangle_[std::size_t(samples_.sourceTriangle[triangle])];
+    }
+
+    const WallSamples& samples_;
+    std::vector<Place> ofTriangle_;
+    std::size_t sections_ = 0;
+};
+
+using Rays = std::array<std::vector<double>, sectors>;  // their thicknesses, of one section
+
+// Median of the sectors, where the wall is thick all around in a section and in those before and
+// after it.
+std::optional<double> thicknessAllAround(std::span<const Rays> sections, std::size_t section) {
+    std::vector<double> judged;
+    for (std::size_t sector = 0; sector < sectors; ++sector) {
+        std::vector<double> rays;
+        for (std::size_t n = section > 0 ? section - 1 : 0;
+             n < std::min(section + 2, sections.size()); ++n)
+            rays.insert(rays.end(), sections[n][sector].begin(), sections[n][sector].end());
+        if (rays.size() < leastRays) continue;
+        if (const double mm = medianOf(rays); mm != unbounded) judged.push_back(mm);
+    }
+    const auto thick = std::ranges::count_if(judged, [](double mm) { return mm >= thickMm; });
+    if (judged.size() < leastJudged || double(thick) < leastThickShare * double(judged.size()))
+        return std::nullopt;
+    return medianOf(judged);
+}
+
+double leastTissueHu(const WallEvidence& evidence) {
+    return 0.5 * (evidence.statistics.wallHu + evidence.statistics.fatHu);
+}
+
+// What lies behind the samples, down to a depth.
+std::vector<VoxelRun> tissueOf(const AnnularWall& wall, const PreparedColon& colon,
+                               const WallEvidence& evidence, double deepestMm) {
+    constexpr double stepMm = 0.5;
+    // Rays part as they go outwards: where the outside is thrice as wide, to 1.5 mm. So each takes
+    // places beside it along.
+    constexpr double besideMm = 0.5;
+    const Grid& grid = colon.cleansed.grid();
+    std::set<std::size_t> voxels = voxelsBehind(evidence, wall.samples, grid);
+    for (const std::uint32_t sample : wall.samples) {
+        const double mm = std::min(deepestMm, wallThicknessMm(evidence, sample).value_or(0.0));
+        const glm::dvec3 from = evidence.samples.mesh.vertices[sample],
+                         into(evidence.shapes[sample].intoWall);
+        const glm::dvec3 across = glm::normalize(
+            glm::cross(into, std::abs(into.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+        const glm::dvec3 other = glm::cross(into, across);
+        for (double depth = stepMm; depth < mm; depth += stepMm)
+            for (const glm::dvec3& beside : {across, -across, other, -other}) {
+                const glm::dvec3 at = from + depth * into + besideMm * beside;
+                const glm::ivec3 voxel(glm::floor(grid.voxelFromPatientPoint(at) + 0.5));
+                if (grid.contains(voxel) && colon.cleansed.at(voxel) >= colon.tissue.airBelowHu)
+                    voxels.insert(grid.index(voxel));
+            }
+    }
+    return runsOf(voxels, grid);
+}
+
+}  // namespace
+
+std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample) {
+    constexpr double stepMm = 0.5, surfaceMm = 3.0;  // by then the edge's blur has passed
+    const SmoothScan& scan = *evidence.smooth;
+    const glm::dmat4& voxelFromPatient = scan.voxelFromPatient();
+    const glm::vec3 start(voxelFromPatient *
+                          glm::dvec4(evidence.samples.mesh.vertices[sample], 1.0));
+    const glm::vec3 perMm(glm::dmat3(voxelFromPatient) *
+                          glm::dvec3(evidence.shapes[sample].intoWall));
+    const double tissueHu = leastTissueHu(evidence);
+    bool inTissue = false;
+    double before = 0.0;
+    for (double mm = stepMm; mm <= deepestWallMm; mm += stepMm) {
+        const double hu = scan.linear(start + float(mm) * perMm);
+        if (inTissue && hu < tissueHu)
+            return mm - stepMm * (tissueHu - hu) / std::max(before - hu, 1e-6);
+        inTissue |= hu >= tissueHu;
+        if (!inTissue && mm >= surfaceMm) return 0.0;
+        before = hu;
+    }
+    return std::nullopt;
+}
+
+std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
+                                      int threads) {
+    const std::size_t count = evidence.samples.mesh.vertices.size();
+    if (colon.flat.surface.triangles.empty() || count == 0) return {};
+    std::vector<double> thickness(count / stride + 1, unbounded);
+    parallelFor(thickness.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end && n * stride < count; ++n)
+            thickness[n] = wallThicknessMm(evidence, std::uint32_t(n * stride)).value_or(unbounded);
+    });
+    const SectionsOfWall places(colon, evidence.samples);
+    std::vector<Rays> sections(places.sections());
+    for (std::size_t n = 0; n * stride < count; ++n) {
+        const auto sample = std::uint32_t(n * stride);
+        if (evidence.unseen[sample] || evidence.untagged[sample]) continue;
+        sections[places.section(sample)][places.sector(sample)].push_back(thickness[n]);
+    }
+    std::vector<AnnularWall> walls;
+    std::vector<std::vector<double>> thicknesses;
+    for (std::size_t n = std::size_t(analCanalMm / sectionMm); n < sections.size(); ++n) {
+        const auto mm = thicknessAllAround(sections, n);
+        if (!mm) continue;
+        const double fromMm = double(n) * sectionMm;
+        // One section between may be spoilt by a pool or a leak.
+        if (walls.empty() || fromMm > walls.back().toMm + sectionMm) {
+            walls.push_back({fromMm, fromMm, 0.0, {}});
+            thicknesses.emplace_back();
+        }
+        walls.back().toMm = fromMm + sectionMm;
+        thicknesses.back().push_back(*mm);
+    }
+    for (std::size_t wall = 0; wall < walls.size(); ++wall)
+        walls[wall].thicknessMm = medianOf(thicknesses[wall]);
+    std::erase_if(walls, [](const AnnularWall& wall) { return wall.lengthMm() < leastLengthMm; });
+    std::vector<std::size_t> wallOf(sections.size(), walls.size());  // or none
+    for (std::size_t wall = 0; wall < walls.size(); ++wall)
+        std::fill(wallOf.begin() + std::ptrdiff_t(walls[wall].fromMm / sectionMm),
+                  wallOf.begin() + std::ptrdiff_t(walls[wall].toMm / sectionMm), wall);
+    for (std::uint32_t sample = 0; sample < count; ++sample)
+        if (const std::size_t wall = wallOf[places.section(sample)]; wall < walls.size())
+            walls[wall].samples.push_back(sample);
+    return walls;
+}
+
+Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const WallEvidence& evidence,
+                  const std::vector<SegmentStart>& segments) {
+    const auto& places = evidence.samples.mesh.vertices;
+    const auto nearestTo = [&](glm::dvec3 point) {
+        return places[*std::ranges::min_element(
+            wall.samples, {}, [&](std::uint32_t v) { return glm::distance(places[v], point); })];
+    };
+    const auto axisAt = [&](double arcMm) {
+        return poseAtArc(colon.centerline, arcMm).point.positionMm;
+    };
+    Finding finding;
+    finding.kind = "annular";
+    finding.arcMm = 0.5 * (wall.fromMm + wall.toMm);
+    finding.segment = segmentAt(segments, finding.arcMm);
+    finding.positionMm = axisAt(finding.arcMm);
+    finding.wallMm = nearestTo(finding.positionMm);
+    // On the side of that place.
+    const glm::dvec3 aside = finding.wallMm - finding.positionMm;
+    finding.diameterEndsMm = {nearestTo(axisAt(wall.fromMm) + aside),
+                              nearestTo(axisAt(wall.toMm) + aside)};
+    finding.diameterMm = glm::distance(finding.diameterEndsMm.first, finding.diameterEndsMm.second);
+    finding.heightMm = wall.thicknessMm;
+    finding.score = annularScore;
+    for (double deepestMm = deepestWallMm;; deepestMm *= 0.5) {
+        finding.voxels = tissueOf(wall, colon, evidence, deepestMm);
+        if (finding.voxels.size() <= std::size_t(maxFindingRuns)) return finding;
+    }
+}
+
+}  // namespace haustra::cad

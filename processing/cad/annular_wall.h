@@ -1,0 +1,50 @@
+// Wall that is thick all around, as by a cancer that encircles the lumen and leaves a channel.
+#pragma once
+
+#include "cad/wall_evidence.h"
+#include "core/findings.h"
+#include "core/segments_along.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace haustra::cad {
+
+/// What such a finding's score is. A rule tells it, which has not learnt: all that it has told were
+/// planted or made so, none of a patient (METHODS §24.6).
+inline constexpr double annularScore = 0.9;
+
+/// A stretch of the colon whose wall is thick all around.
+struct AnnularWall {
+    double fromMm = 0.0, toMm = 0.0;     ///< arcs along the centerline
+    double thicknessMm = 0.0;            ///< of its wall, median
+    std::vector<std::uint32_t> samples;  ///< its wall, ascending
+    double lengthMm() const { return toMm - fromMm; }
+};
+
+/// How deep tissue reaches behind a sample, mm, along the ray into the wall: to where the smoothed
+/// scan is nearer to fat or gas than to tissue. 0 of a wall that is too thin for the scan to show;
+/// none where tissue goes on for `deepestWallMm`, so that something else lies against the colon.
+std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample);
+
+/// From the rectum to the cecum. Thick is what has 6 mm and more: a distended colon's wall has 1 to
+/// 3 mm, a collapsed one's 5 (Macari and Balthazar, AJR 2001; 176: 1105). The colon is looked at in
+/// twelfths around over 12 mm along, each by its median; all around is five sixths of those in
+/// which fat or gas ends the wall, which must be half of them: what touches other organs on more is
+/// not judged. A stretch of 12 mm at least is told, as a fold that goes all around is thinner. The
+/// anal canal, thick by its sphincters, is left out. None without a flat map. The same for any
+/// number of threads. O(samples).
+std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
+                                      int threads);
+
+/// Longer ones are segments that are inflamed or contracted rather than a tumour: of cancers that
+/// thicken the wall 87 % are shorter than 50 mm (Lee et al., Korean J Gastroenterol 2012; 60: 300).
+inline constexpr double longestTumourMm = 100.0;
+
+/// As a finding of kind "annular": its diameter is its length along the wall, its height the wall's
+/// thickness, its centre the channel's; it has no features. Of one with samples.
+Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const WallEvidence& evidence,
+                  const std::vector<SegmentStart>& segments);
+
+}  // namespace haustra::cad
