@@ -66,7 +66,8 @@ void addOptions(CLI::App& program, Arguments& arguments) {
         ->type_name("FILE");
     program
         .add_option("--max-sessions", arguments.server.maxSessions,
-                    "Clients at a time; others are told to come again")
+                    "Clients at a time; others are told to come again. The limit of open files is "
+                    "raised for them, as far as the system lets it")
         ->type_name("N")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

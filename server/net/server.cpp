@@ -1,6 +1,7 @@
 #include "net/server.h"
 
 #include "net/connection.h"
+#include "net/file_limit.h"
 #include "session/worker.h"
 
 #include <charconv>
@@ -25,8 +26,9 @@ namespace {
 using asio::ip::tcp;
 
 // Connections that have not said hello yet may come on top of the sessions.
-constexpr std::size_t maxStrangers = 64;
-constexpr std::chrono::milliseconds acceptPause{100};  // where no file descriptor is left
+constexpr int maxStrangers = 64;
+constexpr std::chrono::milliseconds acceptPause{
+    100};  // where the system has no file descriptor left
 constexpr std::chrono::milliseconds stopPatience{3000};
 
 Result<void> configureTls(asio::ssl::context& tls, const Identity& identity) {
@@ -161,6 +163,7 @@ Result<void> Server::Impl::start() {
         asio::post(io, [this, of = std::move(of)] { lostCases.tell(of); });
     }));
     auto encoding = TRY(session::EncoderThreads::start(options.encoders));
+    TRY(makeRoomForSockets(options.maxSessions, maxStrangers));
     TRY(listen(acceptor, options.listen));
 
     loader = std::make_unique<session::CaseLoader>(cases, *rendering);
@@ -203,7 +206,7 @@ void Server::Impl::accept() {
 }
 
 void Server::Impl::serve(tcp::socket socket) {
-    if (connections.size() >= std::size_t(options.maxSessions) + maxStrangers) {
+    if (connections.size() >= std::size_t(options.maxSessions + maxStrangers)) {
         if (strangers.empty()) return;
         // Who has said nothing for longest makes room for another.
         const auto oldest = strangers.extract(strangers.begin());

@@ -41,7 +41,9 @@ struct ServerOptions {
 /// server/THREADS.md draws its threads. Belongs to the thread that made it.
 class Server {
 public:
-    /// Opens the store, the records, the GPU and the socket. Fails where one of them cannot be had.
+    /// Opens the store, the records, the GPU and the socket, and raises the process's limit of open
+    /// files for its sessions. Fails where one of them cannot be had, or so many sessions do not
+    /// fit.
     static Result<std::unique_ptr<Server>> create(const ServerOptions& options);
     ~Server();
 

@@ -14,6 +14,16 @@ namespace {
 
 using protocol::ErrorReport;
 
+// Of a server that starts; 0 where it does not.
+std::uint16_t portIn(const std::string& file) {
+    std::uint16_t number = 0;
+    for (int n = 0; n < 6000 && number == 0; ++n) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        std::ifstream(file) >> number;
+    }
+    return number;
+}
+
 TEST(Server, FullIsSaidAndStoppingIsClean) {
     const TemporaryFolder folder;
     makeSmallStore(folder.path());
@@ -66,6 +76,54 @@ TEST(Server, WhoSaysNothingMakesRoomForWhoDoes) {
     EXPECT_EQ(error, asio::error::would_block);
 }
 
+// The law: a server that starts has room for all that it says it serves, and one that has not says
+// how many fit, which is true to the last.
+TEST(Server, AsManySessionsAsItPromisesHaveRoom) {
+    const TemporaryFolder folder;
+    makeSmallStore(folder.path());
+    const std::string port = folder.path() / "port";
+    const auto serve = [&](int sessions, const std::function<void(pid_t)>& meanwhile) {
+        return runProgram(
+            "/bin/sh",
+            {"-c",
+             R"(ulimit -Sn 100 && ulimit -Hn 256 && exec "$0" --store "$1" --listen 127.0.0.1:0)"
+             R"( --port-file "$2" --max-sessions "$3")",
+             programPath("haustra-server"), folder.path(), port, std::to_string(sessions)},
+            meanwhile);
+    };
+    const Outcome refused = serve(1000, [](pid_t) {});
+    EXPECT_EQ(refused.exitCode, 1);
+    EXPECT_EQ(lineCount(refused.err), 1u) << refused.err;
+    EXPECT_NE(refused.err.find("LimitNOFILE"), std::string::npos) << refused.err;
+    int most = 0;
+    const std::size_t told = refused.err.find("in which ");
+    ASSERT_NE(told, std::string::npos) << refused.err;
+    ASSERT_EQ(std::sscanf(refused.err.c_str() + told, "in which %d sessions fit", &most), 1);
+    EXPECT_GT(most, 50);
+    EXPECT_EQ(serve(most + 1, [](pid_t) {}).exitCode, 1);
+
+    const Outcome served = serve(most, [&](pid_t server) {
+        const std::uint16_t number = portIn(port);
+        std::vector<std::unique_ptr<TestClient>> clients;
+        for (int n = 0; n < most && number != 0; ++n) {
+            clients.push_back(std::make_unique<TestClient>(number));
+            const auto welcome = clients.back()->hello();
+            ASSERT_TRUE(welcome && welcome->has_welcome()) << n;
+        }
+        asio::io_context io;
+        std::vector<asio::ip::tcp::socket> strangers;
+        for (int n = 0; n < 64 && number != 0; ++n)
+            strangers.emplace_back(io).connect({asio::ip::address_v4::loopback(), number});
+        for (const char* name : {smallCaseName, "scan"}) {  // a case's files have room, too
+            const auto opened = clients.back()->openCase(name);
+            EXPECT_TRUE(opened && opened->has_case_opened());
+        }
+        ::kill(server, SIGTERM);
+    });
+    EXPECT_EQ(served.exitCode, 0);
+    EXPECT_EQ(served.err.find("cannot accept"), std::string::npos) << served.err;
+}
+
 // As behind a pipe to a program that ends, or a journal that starts anew.
 TEST(Server, GoesOnWhereNobodyTakesItsLogAnyMore) {
     const TemporaryFolder folder;
@@ -78,11 +136,7 @@ TEST(Server, GoesOnWhereNobodyTakesItsLogAnyMore) {
                     programPath("haustra-server"), folder.path(), port, log},
                    [&](pid_t server) {
                        const int reader = ::open(log.c_str(), O_RDONLY | O_CLOEXEC);
-                       std::uint16_t number = 0;
-                       for (int n = 0; n < 6000 && number == 0; ++n) {
-                           std::this_thread::sleep_for(std::chrono::milliseconds(10));
-                           std::ifstream(port) >> number;
-                       }
+                       const std::uint16_t number = portIn(port);
                        ::close(reader);
                        for (int n = 0; n < 3 && number != 0; ++n) {
                            TestClient client(number);  // its coming and going is logged
