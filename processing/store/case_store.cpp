@@ -2,19 +2,14 @@
 
 #include "store/case_index.h"
 #include "store/durable_file.h"
+#include "store/file_lock.h"
 #include "store/lost_pages.h"
 #include "store/product_file.h"
 #include "store/products.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <set>
 #include <system_error>
-
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 namespace haustra::store {
 namespace {
@@ -23,35 +18,12 @@ namespace fs = std::filesystem;
 
 constexpr char lockName[] = ".lock";
 
-// Holds flock(2) on an open file; the kernel lets go when the process ends, however it ends.
-class FileLock {
-public:
-    explicit FileLock(int descriptor) : descriptor_(descriptor) {}
-    ~FileLock() { ::close(descriptor_); }
-    FileLock(const FileLock&) = delete;
-    FileLock& operator=(const FileLock&) = delete;
-
-private:
-    int descriptor_;
-};
-
 Result<std::shared_ptr<const void>> lockCase(const fs::path& folder, const std::string& name) {
-    const fs::path file = folder / lockName;
-    const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
-    if (descriptor < 0) {
-        return fail(ErrorKind::io, std::string("cannot open: ") + std::strerror(errno),
-                    file.string());
-    }
-    auto lock = std::make_shared<const FileLock>(descriptor);
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        if (errno == EWOULDBLOCK) {
-            return fail(ErrorKind::wrongState,
-                        "case " + name + " is being written by another process", folder.string());
-        }
-        return fail(ErrorKind::io, std::string("cannot lock: ") + std::strerror(errno),
-                    file.string());
-    }
-    return std::shared_ptr<const void>(std::move(lock));
+    auto lock = lockFile(folder / lockName, WhereLocked::refuse);
+    if (!lock && lock.error().kind == ErrorKind::wrongState)
+        return fail(ErrorKind::wrongState, "case " + name + " is being written by another process",
+                    folder.string());
+    return lock;
 }
 
 std::optional<ScanIdentity> scanOf(const CaseIndex& index) {

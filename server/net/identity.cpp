@@ -1,6 +1,7 @@
 #include "net/identity.h"
 
 #include "store/durable_file.h"
+#include "store/file_lock.h"
 
 #include <memory>
 #include <span>
@@ -68,6 +69,8 @@ Result<Identity> identityIn(const fs::path& folder) {
     fs::create_directories(folder, error);
     if (error) return fail(ErrorKind::io, "cannot make the folder: " + error.message(), folder);
     fs::permissions(folder, fs::perms::owner_all, error);
+    const auto alone = TRY(store::lockFile(folder / ".lock", store::WhereLocked::wait));
+    if (fs::exists(identity.certificate, error)) return identity;  // another server's
 
     const Key key(EVP_EC_gen("P-256"));
     const Certificate certificate = key ? selfSigned(key.get()) : nullptr;
