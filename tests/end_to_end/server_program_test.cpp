@@ -24,6 +24,15 @@ std::uint16_t portIn(const std::string& file) {
     return number;
 }
 
+std::size_t socketsOf(pid_t process) {
+    std::size_t count = 0;
+    std::error_code gone;
+    for (const auto& descriptor :
+         std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/fd", gone))
+        count += std::filesystem::read_symlink(descriptor, gone).string().starts_with("socket:");
+    return count;
+}
+
 TEST(Server, FullIsSaidAndStoppingIsClean) {
     const TemporaryFolder folder;
     makeSmallStore(folder.path());
@@ -122,6 +131,50 @@ TEST(Server, AsManySessionsAsItPromisesHaveRoom) {
     });
     EXPECT_EQ(served.exitCode, 0);
     EXPECT_EQ(served.err.find("cannot accept"), std::string::npos) << served.err;
+}
+
+// The law: whatever strangers say, the server has no more sockets than its sessions and 64 of
+// theirs, and a client who says hello rightly is served at once.
+TEST(Server, WhoSaysHelloWronglyIsBoundedAndKeepsNobodyOut) {
+    const TemporaryFolder folder;
+    makeSmallStore(folder.path());
+    constexpr std::size_t sessions = 2, strangers = 64;
+    ServerProcess server(folder.path(), {"--max-sessions", std::to_string(sessions)});
+    TestClient first(server.port());
+    ASSERT_TRUE(first.hello());
+    protocol::ClientMessage otherVersion, early;
+    otherVersion.mutable_hello()->set_protocol_version(2);
+    early.mutable_list_cases();
+    const TestClient::Bytes wrong[] = {
+        TestClient::frameOf(otherVersion), TestClient::frameOf(early),
+        TestClient::Bytes{0xff, 0xff, 0xff, 0xff, 0x01}, TestClient::Bytes(4096, 0x77)};
+    std::vector<std::unique_ptr<TestClient>> bad;  // who read no answer, and stay
+    std::size_t most = 0;
+    for (std::size_t n = 0; n < 2 * strangers; ++n) {
+        try {
+            bad.push_back(std::make_unique<TestClient>(server.port()));
+            bad.back()->sendBytes(wrong[n % std::size(wrong)]);
+        } catch (const std::system_error&) {  // made room meanwhile
+        }
+        most = std::max(most, socketsOf(server.pid()));
+    }
+    // And that which listens, and one that has just been accepted.
+    EXPECT_LE(most, sessions + strangers + 2);
+    EXPECT_GE(most, strangers) << "they leave too soon to tell anything";
+    const auto before = std::chrono::steady_clock::now();
+    TestClient second(server.port());
+    const auto welcome = second.hello();
+    EXPECT_TRUE(welcome && welcome->has_welcome());
+    EXPECT_LT(std::chrono::steady_clock::now() - before, std::chrono::seconds(2));
+    // None of them was taken for a session, nor has one that has gone left anything.
+    TestClient third(server.port());
+    const auto refused = third.hello();
+    ASSERT_TRUE(refused && refused->has_error());
+    EXPECT_EQ(refused->error().code(), ErrorReport::BUSY);
+    bad.clear();
+    for (int n = 0; n < 1000 && socketsOf(server.pid()) > sessions + 2; ++n)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_LE(socketsOf(server.pid()), sessions + 2);
 }
 
 // As behind a pipe to a program that ends, or a journal that starts anew.
