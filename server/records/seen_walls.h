@@ -49,6 +49,7 @@ public:
 
     /// Nothing where there is none. Fails (io) where what is kept is damaged.
     Result<std::optional<Ledger>> find(const LedgerKey& key);
+    /// Of this store: another program that serves the reader keeps what it has of it again.
     Result<void> forget(const LedgerKey& key);
     /// Of a wall at most so many, the newest first. Fails (io) where one is damaged.
     Result<std::vector<Ledger>> ofWall(const std::string& wall, int most);
