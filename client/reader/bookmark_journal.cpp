@@ -1,5 +1,6 @@
 #include "reader/bookmark_journal.h"
 
+#include "core/text_file.h"
 #include "link/private_file.h"
 #include "protocol/limits.h"
 
@@ -8,7 +9,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -95,17 +95,6 @@ std::optional<JournalEntry> parsed(const std::string& text, const std::string& k
     return std::nullopt;
 }
 
-Result<std::string> textOf(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::string text(maxFileBytes, '\0');
-    if (in) in.read(text.data(), std::streamsize(text.size()));
-    // A file that is too long is damaged; one that cannot be read to its end may be sound.
-    if (in.bad() || (!in.eof() && in.gcount() == 0))
-        return fail(ErrorKind::io, "cannot read a bookmark that is not saved yet", file.string());
-    text.resize(std::size_t(in.gcount()));
-    return text;
-}
-
 Error setAside(const std::filesystem::path& file) {
     std::filesystem::path aside;
     std::error_code error;
@@ -158,13 +147,18 @@ BookmarkJournal::Contents BookmarkJournal::read() const {
             {ErrorKind::io, "cannot read the bookmarks that are not saved yet: " + error.message(),
              folder_.string()});
     for (const auto& file : files) {
-        const auto text = textOf(file);
-        if (!text) {
-            // Another client has removed it meanwhile: the server has it.
-            if (std::filesystem::exists(file, error)) contents.errors.push_back(text.error());
+        const auto text = readTextFile(file, maxFileBytes);
+        if (!text && text.error().kind == ErrorKind::notFound)
+            continue;  // another client has removed it meanwhile: the server has it
+        // A file that is too long is damaged; one that cannot be read to its end may be sound.
+        if (!text && text.error().kind != ErrorKind::badInput) {
+            contents.errors.push_back(
+                {ErrorKind::io,
+                 "a bookmark that is not saved yet cannot be read: " + text.error().message,
+                 file.string()});
             continue;
         }
-        auto entry = parsed(*text, file.stem().string());
+        auto entry = parsed(text.value_or(""), file.stem().string());
         if (!entry)
             contents.errors.push_back(setAside(file));
         else if (entry->bookmark.clientKey.empty())

@@ -1,5 +1,6 @@
 #include "script/script_player.h"
 
+#include "core/durable_file.h"
 #include "core/raycasters.h"
 #include "protocol/capabilities.h"
 #include "protocol/limits.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <map>
 
@@ -489,10 +489,7 @@ Status Player::run(const BookmarksAction& action, ActionReport& report) {
 
 Status Player::writeJson(const std::string& file, const std::string& text, ActionReport& report) {
     report.file = file;
-    std::ofstream out(options_.outFolder / file);
-    out << text;
-    if (!out.flush()) return fail(ErrorKind::io, "cannot write the file", file);
-    return {};
+    return writeDurably(options_.outFolder / file, text);
 }
 
 Status Player::run(const WaitAction& action, ActionReport&) {

@@ -1,10 +1,10 @@
 #include "tiles/png_file.h"
 
-#include <fstream>
-#include <system_error>
+#include "core/durable_file.h"
+
+#include <string>
 
 #include <stb/stb_image_write.h>
-#include <unistd.h>
 
 namespace haustra::tiles {
 
@@ -14,20 +14,13 @@ Result<void> writePng(const std::filesystem::path& file, std::span<const std::ui
         return fail(ErrorKind::badInput, "the picture's size and its bytes differ", file.string());
     if (rgb.size() > maxPngBytes)  // stb counts in int
         return fail(ErrorKind::badInput, "the picture is too large for a PNG file", file.string());
-    const std::string temporary = file.string() + "." + std::to_string(::getpid()) + ".tmp";
-    std::ofstream out(temporary, std::ios::binary);
-    const auto write = [](void* stream, void* bytes, int count) {
-        static_cast<std::ofstream*>(stream)->write(static_cast<const char*>(bytes), count);
+    std::string png;
+    const auto append = [](void* to, void* bytes, int count) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(bytes), std::size_t(count));
     };
-    const bool encoded =
-        out && stbi_write_png_to_func(write, &out, width, height, 3, rgb.data(), width * 3) != 0;
-    out.close();
-    std::error_code error;
-    if (encoded && out) std::filesystem::rename(temporary, file, error);
-    if (encoded && out && !error) return {};
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    return fail(ErrorKind::io, "cannot write the PNG file", file.string());
+    if (stbi_write_png_to_func(append, &png, width, height, 3, rgb.data(), width * 3) == 0)
+        return fail(ErrorKind::io, "there is not enough memory for the PNG file", file.string());
+    return writeDurably(file, png);
 }
 
 }  // namespace haustra::tiles

@@ -1,12 +1,13 @@
 #include "core/optics_preset.h"
 
+#include "core/durable_file.h"
+#include "core/text_file.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -188,29 +189,15 @@ std::string presetText(const OpticsPreset& preset) {
 }
 
 Result<OpticsPreset> readPresetFile(const std::filesystem::path& file) {
-    constexpr std::uintmax_t longestFile = 1 << 20;
+    constexpr std::size_t longestFile = 1 << 20;
     const std::string place = file.filename().string();
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(file, error);
-    if (error || bytes > longestFile)
-        return fail(ErrorKind::io, "cannot be read, or is over 1 MiB", place);
-    std::ifstream in(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(in), {});
-    if (!in) return fail(ErrorKind::io, "cannot be read", place);
-    return parsePreset(text, place);
+    auto text = readTextFile(file, longestFile);
+    if (!text) text.error().place = place;  // not where the presets of a server lie
+    return parsePreset(TRY(std::move(text)), place);
 }
 
 Result<void> writePresetFile(const std::filesystem::path& file, const OpticsPreset& preset) {
-    std::filesystem::path beside = file;
-    beside += ".part";
-    std::error_code error;
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    out << presetText(preset);
-    out.close();
-    if (out) std::filesystem::rename(beside, file, error);
-    if (out && !error) return {};
-    std::filesystem::remove(beside, error);
-    return fail(ErrorKind::io, "the file cannot be written", file.string());
+    return writeDurably(file, presetText(preset));
 }
 
 }  // namespace haustra

@@ -1,8 +1,9 @@
 #include "coverage/lens_file.h"
 
+#include "core/text_file.h"
+
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include <nlohmann/json.hpp>
@@ -169,13 +170,7 @@ Result<Colonoscope> readColonoscope(const std::string& nameOrFile) {
                     "there is no such lens: neither a file nor olympus-cf-q160l", nameOrFile);
     if (!std::filesystem::is_regular_file(nameOrFile, ignored))
         return fail(ErrorKind::badInput, "this is no lens file", nameOrFile);
-    std::ifstream in(nameOrFile, std::ios::binary);
-    std::string text(mostBytes + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
-    if (in.bad() || !in.is_open()) return fail(ErrorKind::io, "cannot read", nameOrFile);
-    text.resize(std::size_t(in.gcount()));
-    if (text.size() > mostBytes)
-        return fail(ErrorKind::badInput, "the file is too large for a lens", nameOrFile);
+    const auto text = TRY(readTextFile(nameOrFile, mostBytes));
     // OpenCV's JSON has a camera_matrix, and neither its YAML nor its XML is JSON.
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     const bool own =

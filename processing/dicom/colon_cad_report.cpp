@@ -1,5 +1,6 @@
 #include "dicom/colon_cad_report.h"
 
+#include "core/durable_file.h"
 #include "core/voxel_ellipsoid.h"
 #include "dicom/dicom_library.h"
 #include "dicom/series_selection.h"
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <functional>
 #include <set>
-#include <system_error>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcostrmb.h>
@@ -17,7 +17,6 @@
 #include <dcmtk/dcmsr/codes/dcm.h>
 #include <dcmtk/dcmsr/codes/ucum.h>
 #include <dcmtk/dcmsr/dsrdoc.h>
-#include <unistd.h>
 
 namespace haustra::dicom {
 namespace {
@@ -503,17 +502,12 @@ Result<void> nameDocument(DcmDataset& dataset, const Findings& findings,
 }
 
 Result<void> save(DcmFileFormat& format, const std::filesystem::path& file) {
-    std::filesystem::path temporary = file;
-    temporary += ".tmp-" + std::to_string(::getpid());
+    DurableFile made(file);
     const OFCondition saved =
-        format.saveFile(OFFilename(temporary.c_str()), EXS_LittleEndianExplicit, EET_ExplicitLength,
-                        EGL_recalcGL, EPD_withoutPadding);
-    std::error_code error;
-    if (saved.good()) std::filesystem::rename(temporary, file, error);
-    if (saved.good() && !error) return {};
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    return fail(ErrorKind::io, "the report cannot be written", file.string());
+        format.saveFile(OFFilename(made.beside().c_str()), EXS_LittleEndianExplicit,
+                        EET_ExplicitLength, EGL_recalcGL, EPD_withoutPadding);
+    if (saved.bad()) return fail(ErrorKind::io, "the report cannot be written", file.string());
+    return made.publish();
 }
 
 }  // namespace

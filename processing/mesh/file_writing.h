@@ -1,8 +1,6 @@
 // What the writers of mesh files share.
 #pragma once
 
-#include "core/result.h"
-
 #include <charconv>
 #include <filesystem>
 #include <string>
@@ -30,9 +28,6 @@ void appendTextLine(std::string& bytes, const Vector& v) {
     appendText(bytes, v.y, ' ');
     appendText(bytes, v.z, '\n');
 }
-
-/// Under a temporary name beside `file` that is renamed. Fails (io) naming the file.
-Result<void> replaceFile(const std::filesystem::path& file, const std::string& bytes);
 
 /// The name's ending in small letters.
 std::string endingOf(const std::filesystem::path& file);

@@ -1,5 +1,6 @@
 #include "mesh/flat_map_file.h"
 
+#include "core/durable_file.h"
 #include "mesh/file_writing.h"
 
 namespace haustra::mesh {
@@ -71,8 +72,8 @@ Result<void> writeFlatMap(const std::filesystem::path& file, const FlatMap& map,
     if (!bridged.empty() && bridged.size() != map.surface.triangles.size())
         return fail(ErrorKind::badInput, "the bridges are of another flat map", file.string());
     const std::string ending = endingOf(file);
-    if (ending == ".obj") return replaceFile(file, objBytes(map));
-    if (ending == ".ply") return replaceFile(file, plyBytes(map, bridged));
+    if (ending == ".obj") return writeDurably(file, objBytes(map));
+    if (ending == ".ply") return writeDurably(file, plyBytes(map, bridged));
     return fail(ErrorKind::unsupported, "a flat map's file name must end in .obj or .ply",
                 file.string());
 }

@@ -1,10 +1,11 @@
 #include "mesh/mesh_file.h"
 
+#include "core/durable_file.h"
+#include "core/text_file.h"
 #include "mesh/file_writing.h"
 #include "mesh/polygon_soup.h"
 
 #include <cstring>
-#include <fstream>
 #include <new>
 #include <optional>
 
@@ -25,21 +26,6 @@ std::optional<Format> formatOf(const std::filesystem::path& file) {
 tl::unexpected<Error> unknownFormat(const std::filesystem::path& file) {
     return fail(ErrorKind::unsupported, "a mesh file's name must end in .ply, .obj, .off or .stl",
                 file.string());
-}
-
-Result<std::string> readBytes(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(file, error);  // fails for folders and devices
-    std::ifstream stream(file, std::ios::binary);
-    if (error || !stream) {
-        const bool missing = !std::filesystem::exists(file, error);
-        if (missing) return fail(ErrorKind::notFound, "there is no such file", file.string());
-        return fail(ErrorKind::io, "cannot read the mesh", file.string());
-    }
-    std::string bytes(size, '\0');
-    if (!stream.read(bytes.data(), std::streamsize(size)))
-        return fail(ErrorKind::io, "cannot read the mesh", file.string());
-    return bytes;
 }
 
 Result<TriMesh> meshOf(const std::string& bytes, Format format, const std::string& place) {
@@ -120,7 +106,7 @@ std::string stlBytes(const TriMesh& mesh) {
 Result<TriMesh> readMesh(const std::filesystem::path& file) try {
     const auto format = formatOf(file);
     if (!format) return unknownFormat(file);
-    const auto bytes = TRY(readBytes(file));
+    const auto bytes = TRY(readTextFile(file));
     return meshOf(bytes, *format, file.string());
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "the mesh does not fit into memory", file.string());
@@ -133,12 +119,12 @@ Result<void> writeMesh(const std::filesystem::path& file, const TriMesh& mesh) {
                               : *format == Format::obj ? objBytes(mesh)
                               : *format == Format::off ? offBytes(mesh)
                                                        : stlBytes(mesh);
-    return replaceFile(file, bytes);
+    return writeDurably(file, bytes);
 }
 
 Result<void> writePly(const std::filesystem::path& file, const TriMesh& mesh,
                       const std::string& property, const std::vector<std::uint8_t>& values) {
-    return replaceFile(file, plyBytes(mesh, property, values));
+    return writeDurably(file, plyBytes(mesh, property, values));
 }
 
 }  // namespace haustra::mesh

@@ -1,3 +1,4 @@
+#include "core/durable_file.h"
 #include "nifti/gzip_stream.h"
 #include "nifti/nifti_file.h"
 #include "nifti/ras.h"
@@ -11,7 +12,6 @@
 #include <type_traits>
 
 #include <nifti1_io.h>
-#include <unistd.h>
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -84,23 +84,15 @@ Result<void> writeImage(const std::filesystem::path& file, const nifti_1_header&
     TRY(checkGrid(grid, file.string()));
     std::array<std::byte, dataOffset> head{};
     std::memcpy(head.data(), &header, sizeof header);
-    std::filesystem::path temporary = file;
-    temporary += '.';
-    temporary += std::to_string(getpid()) + ".tmp";
-    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
+    DurableFile made(file);
+    std::ofstream out(made.beside(), std::ios::binary);
     if (file.extension() == ".gz")
         writeGzip(out, head, body, 0);
     else
         writePlain(out, head, body);
     out.close();
-    std::error_code error;
-    if (out) {
-        std::filesystem::rename(temporary, file, error);
-        if (!error) return {};
-    }
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    return fail(ErrorKind::io, "the file cannot be written", file.string());
+    if (!out) return fail(ErrorKind::io, "the file cannot be written", file.string());
+    return made.publish();
 } catch (const std::bad_alloc&) {
     return fail(ErrorKind::io, "there is not enough memory to write the file", file.string());
 }

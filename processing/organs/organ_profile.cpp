@@ -1,16 +1,13 @@
 #include "organs/organ_profile.h"
 
 #include "core/printed_text.h"
+#include "core/text_file.h"
 #include "organs/built_in_profiles.h"
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -239,13 +236,8 @@ Result<OrganProfile> parseProfile(std::string_view text, const std::string& plac
 Result<OrganProfile> readProfile(const std::string& nameOrFile) {
     const auto builtIn = builtInProfiles().find(nameOrFile);
     if (builtIn != builtInProfiles().end()) return parseProfile(builtIn->second, nameOrFile);
-    std::error_code ignored;
-    if (std::filesystem::is_directory(nameOrFile, ignored))
-        return fail(ErrorKind::badInput, "this is a folder, not an organ's profile", nameOrFile);
-    std::ifstream in(nameOrFile, std::ios::binary);
-    if (!in) {
-        if (std::filesystem::exists(nameOrFile, ignored))
-            return fail(ErrorKind::io, "cannot open", nameOrFile);
+    const auto text = readTextFile(nameOrFile, mostBytes);
+    if (!text && text.error().kind == ErrorKind::notFound) {
         std::string names;
         for (const auto& [name, profile] : builtInProfiles())
             names += (names.empty() ? "" : ", ") + std::string(name);
@@ -253,16 +245,10 @@ Result<OrganProfile> readProfile(const std::string& nameOrFile) {
                     "there is no such organ's profile: neither a file nor one of " + names,
                     nameOrFile);
     }
-    std::string text(mostBytes + 1, '\0');
-    in.read(text.data(), std::streamsize(text.size()));
-    if (in.bad()) return fail(ErrorKind::io, "cannot read", nameOrFile);
-    if (in.gcount() == 0)
+    if (!text) return tl::make_unexpected(text.error());
+    if (text->empty())
         return fail(ErrorKind::badInput, "the organ's profile is an empty file", nameOrFile);
-    text.resize(std::size_t(in.gcount()));
-    if (text.size() > mostBytes)
-        return fail(ErrorKind::badInput, "the file is too large for an organ's profile",
-                    nameOrFile);
-    return parseProfile(text, nameOrFile);
+    return parseProfile(*text, nameOrFile);
 }
 
 std::string segmentationOptions(const OrganProfile& profile) {

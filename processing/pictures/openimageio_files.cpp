@@ -1,3 +1,4 @@
+#include "core/durable_file.h"
 #include "pictures/image_libraries.h"
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <OpenImageIO/color.h>
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -27,18 +27,11 @@ using OIIO::TypeDesc;
 /// OpenImageIO's own file tells nobody when a full disk refuses its last bytes.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
 public:
-    explicit CheckedFile(const std::string& name)
-        : IOProxy(name, Write),
-          descriptor_(::open(name.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {}
-    ~CheckedFile() override { finish(); }
+    explicit CheckedFile(const DurableFile& file)
+        : IOProxy(file.beside().string(), Write), descriptor_(file.descriptor()) {}
 
-    bool isOpen() const { return descriptor_ >= 0; }
-    /// Closes it; true: all that was written is on the disk.
-    bool finish() {
-        if (!isOpen()) return false;
-        sound_ = ::fsync(descriptor_) == 0 && sound_;
-        return ::close(std::exchange(descriptor_, -1)) == 0 && sound_;
-    }
+    /// Whether all that was written has been taken.
+    bool isSound() const { return sound_; }
 
     // Not "file", which OpenImageIO takes for its own.
     const char* proxytype() const override { return "haustra"; }
@@ -133,19 +126,10 @@ std::vector<float> linearLight(const std::vector<std::uint8_t>& rgb) {
 class OpenImageIoFile final : public PictureFile {
 public:
     OpenImageIoFile(fs::path file, OIIO::ImageSpec spec)
-        : file_(std::move(file)),
-          spec_(std::move(spec)),
-          temporary_(file_.string() + "." + std::to_string(::getpid()) + ".tmp"),
-          bytes_(temporary_) {}
-    ~OpenImageIoFile() override {
-        output_.reset();  // writes to bytes_ as it goes
-        bytes_.finish();
-        std::error_code ignored;
-        if (!done_) fs::remove(temporary_, ignored);
-    }
+        : file_(std::move(file)), spec_(std::move(spec)), made_(file_), bytes_(made_) {}
 
     Result<void> open() {
-        if (!bytes_.isOpen())
+        if (made_.descriptor() < 0)
             return fail(ErrorKind::io, "cannot be opened for writing", file_.string());
         output_ = OIIO::ImageOutput::create(formatOf(file_), &bytes_);
         if (!output_ || !output_->open(file_.string(), spec_)) return notWhole();
@@ -172,13 +156,8 @@ public:
 
     Result<void> finish() override try {
         if (rows_ != spec_.height) return disagree();
-        const bool closed = output_->close();
-        std::error_code error;
-        if (!bytes_.finish() || !closed) return notWhole();
-        fs::rename(temporary_, file_, error);
-        if (error) return notWhole();
-        done_ = true;
-        return {};
+        if (!output_->close() || !bytes_.isSound()) return notWhole();
+        return made_.publish();
     } catch (const std::exception&) {
         return notWhole();
     }
@@ -195,11 +174,10 @@ private:
 
     fs::path file_;
     OIIO::ImageSpec spec_;
-    std::string temporary_;
+    DurableFile made_;
     CheckedFile bytes_;
-    std::unique_ptr<OIIO::ImageOutput> output_;
+    std::unique_ptr<OIIO::ImageOutput> output_;  // last: it writes to bytes_ as it goes
     int rows_ = 0;
-    bool done_ = false;
 };
 
 // ---- in

@@ -1,11 +1,9 @@
 #include "store/case_index.h"
 
-#include "store/durable_file.h"
+#include "core/durable_file.h"
+#include "core/text_file.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 
 #include <nlohmann/json.hpp>
 
@@ -32,14 +30,9 @@ const std::string* text(const json& object, const char* field) {
 
 Result<CaseIndex> readCaseIndex(const std::filesystem::path& caseFolder) {
     const std::filesystem::path file = caseFolder / caseIndexName;
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-        std::error_code error;
-        if (!std::filesystem::exists(file, error) && !error) return CaseIndex{};
-        return fail(ErrorKind::io, "cannot open", file.string());
-    }
-    const std::string content{std::istreambuf_iterator<char>(in), {}};
-    const json index = json::parse(content, nullptr, false);
+    auto content = readTextFile(file);
+    if (!content && content.error().kind == ErrorKind::notFound) return CaseIndex{};
+    const json index = json::parse(TRY(std::move(content)), nullptr, false);
     const auto damaged = [&](const std::string& what) {
         return fail(ErrorKind::badInput,
                     "the case's index is damaged: " + what +
@@ -84,8 +77,7 @@ Result<void> writeCaseIndex(const std::filesystem::path& caseFolder, const CaseI
         all["scan"] = {
             {"key", scan->key.hex}, {"study_uid", scan->studyUid}, {"series_uid", scan->seriesUid}};
     }
-    const std::string content = all.dump(2) + "\n";
-    return writeDurably(caseFolder, caseIndexName, {std::as_bytes(std::span(content))});
+    return writeDurably(caseFolder / caseIndexName, all.dump(2) + "\n", 0640);
 }
 
 }  // namespace haustra::store

@@ -1,7 +1,7 @@
 #include "store/case_store.h"
 
+#include "core/durable_file.h"
 #include "store/case_index.h"
-#include "store/durable_file.h"
 #include "store/file_lock.h"
 #include "store/lost_pages.h"
 #include "store/product_file.h"

@@ -1,7 +1,7 @@
 #include "store/product_file.h"
 
+#include "core/durable_file.h"
 #include "core/parallel.h"
-#include "store/durable_file.h"
 #include "store/lost_pages.h"
 
 #include <algorithm>
@@ -202,7 +202,7 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
     fixed.valuesOffset = alignedOffset(attributes.size());
     fixed.valuesBytes = bytes;
     fixed.key = header.key;
-    return writeDurably(folder, name, [&](int descriptor) {
+    const auto write = [&](int descriptor) {
         const auto length = off_t(fixed.valuesOffset + fixed.valuesBytes);
         if (::ftruncate(descriptor, length) != 0) return false;
         const auto digest =
@@ -212,7 +212,8 @@ Result<void> writeProduct(const std::filesystem::path& folder, const std::string
         fixed.headerDigest = headerDigest(fixed, attributes);
         return writeAt(descriptor, 0, std::as_bytes(std::span(&fixed, 1))) &&
                writeAt(descriptor, sizeof fixed, std::as_bytes(std::span(attributes)));
-    });
+    };
+    return writeDurably(folder / name, write, 0640);
 }
 
 Result<void> writeProduct(const std::filesystem::path& folder, const std::string& name,

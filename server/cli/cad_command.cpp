@@ -12,6 +12,7 @@
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "core/text_file.h"
 #include "pictures/picture_file.h"
 #include "pipeline/colon_inputs.h"
@@ -265,7 +266,7 @@ Result<std::vector<cad::Candidate>> candidatesOf(const LoadedCase& loaded,
         arguments.without, [](const std::string& part) { return part.starts_with(featurePart); });
     auto candidates = cad::findCandidates(examined.colon(), examined.evidence(), &texture, options,
                                           file.empty() && own ? model : nullptr);
-    if (!file.empty()) TRY(writeTextFile(file, cad::candidateTable(candidates)));
+    if (!file.empty()) TRY(writeDurably(file, cad::candidateTable(candidates)));
     return candidates;
 }
 
@@ -339,7 +340,7 @@ Result<cad::TextureModel> learnTexture(const std::vector<LoadedCase>& cases,
                     arguments.truth.string());
     const std::string text =
         cad::textureText(cad::learnTexture(walls, polyps, !isWithout(arguments, "pca")));
-    if (!file.empty()) TRY(writeTextFile(file, text));
+    if (!file.empty()) TRY(writeDurably(file, text));
     return cad::textureOfText(text, "texture");  // as it is when it is kept
 }
 
@@ -478,7 +479,7 @@ Result<void> runTrain(const CadArguments& arguments) {
     const auto trained = TRY(cad::trainModel(texture, cases, options));
     sayCurve("cross-validation by study, of texture learnt from all", trained.crossValidated,
              trained.model, bar);
-    return writeTextFile(arguments.model, cad::modelText(trained.model));
+    return writeDurably(arguments.model, cad::modelText(trained.model));
 }
 
 Result<void> runCalibrate(const CadArguments& arguments) {
@@ -525,7 +526,7 @@ Result<void> runCalibrate(const CadArguments& arguments) {
             fmt::format("warning: {} case{} can tell little of how probable a place is, or how "
                         "many false findings a scan has: calibrate on some dozens",
                         loaded.size(), loaded.size() == 1 ? "" : "s"));
-    return writeTextFile(arguments.model, cad::modelText(model));
+    return writeDurably(arguments.model, cad::modelText(model));
 }
 
 constexpr const char* columnsHelp =
@@ -680,11 +681,11 @@ Result<void> runEvaluate(const CadArguments& arguments) {
                                                    every.size() == 1 ? "" : "s")));
             TRY(pictures::writePicture(arguments.froc, picture, ownProvenance()));
         } else {
-            TRY(writeTextFile(arguments.froc, frocCsv(curve)));
+            TRY(writeDurably(arguments.froc, frocCsv(curve)));
         }
     }
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, report.dump(2) + "\n");
+    return writeDurably(arguments.report, report.dump(2) + "\n");
 }
 
 void addCases(CLI::App& command, CadArguments& arguments) {

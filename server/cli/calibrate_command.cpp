@@ -5,6 +5,7 @@
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "coverage/board.h"
 #include "coverage/calibrate.h"
 #include "coverage/lens_file.h"
@@ -267,8 +268,8 @@ Result<void> runCalibrate(const CalibrateArguments& arguments) {
     std::string openCv;
     if (!arguments.openCv.empty())
         openCv = TRY(coverage::openCvText(scope, arguments.openCv.extension().string()));
-    if (!arguments.out.empty()) TRY(writeTextFile(arguments.out, lensText));
-    if (!arguments.openCv.empty()) TRY(writeTextFile(arguments.openCv, openCv));
+    if (!arguments.out.empty()) TRY(writeDurably(arguments.out, lensText));
+    if (!arguments.openCv.empty()) TRY(writeDurably(arguments.openCv, openCv));
     if (residuals) TRY(pictures::writePicture(arguments.residuals, *residuals, ownProvenance()));
     if (!arguments.undistorted.empty())
         TRY(pictures::writePicture(arguments.undistorted,

@@ -7,6 +7,7 @@
 #include "cli/provenance.h"
 #include "cli/text_files.h"
 #include "core/bridges.h"
+#include "core/durable_file.h"
 #include "coverage/corner_path.h"
 #include "coverage/coverage_pictures.h"
 #include "coverage/coverage_report.h"
@@ -477,7 +478,7 @@ Result<void> runCoverage(const CoverageArguments& arguments) {
     TRY(target.publishText(product::coverage,
                            store::makeKey("coverage", coverageVersion, said, inputs.keys),
                            coverageJson(report, wall, seen)));
-    if (!arguments.report.empty()) TRY(writeTextFile(arguments.report, coverageJson(report)));
+    if (!arguments.report.empty()) TRY(writeDurably(arguments.report, coverageJson(report)));
     TRY(writePictures(arguments.pictures, drawn));
     bar.show("done", 1.0);
     print(report, (millisecondsNow() - began) / 1e3, lookSeconds);

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "handles/handle_removal.h"
 #include "mesh/mesh_file.h"
 
@@ -99,7 +100,7 @@ Result<void> runDenoise(const DenoiseArguments& arguments) {
                report["genus_before"].get<long>(), report["genus_after"].get<long>(),
                removal->areaChangeMm2, tellCrossings("; in all ", crossingsOf(*removal)));
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, report.dump(2) + "\n");
+    return writeDurably(arguments.report, report.dump(2) + "\n");
 }
 
 void checkMeshName(const char* argument, const fs::path& file) {

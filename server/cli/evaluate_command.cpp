@@ -2,6 +2,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "phantom/score.h"
 #include "pipeline/read_inputs.h"
 #include "store/case_store.h"
@@ -63,7 +64,7 @@ Result<void> runEvaluate(const EvaluateArguments& arguments) {
         report[row.field] = row.value;
     }
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, report.dump(2) + "\n");
+    return writeDurably(arguments.report, report.dump(2) + "\n");
 }
 
 }  // namespace

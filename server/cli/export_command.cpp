@@ -5,6 +5,7 @@
 #include "cli/flat_image_export.h"
 #include "cli/text_files.h"
 #include "core/bridges.h"
+#include "core/durable_file.h"
 #include "core/findings.h"
 #include "core/source_series.h"
 #include "coverage/coverage_report.h"
@@ -109,7 +110,7 @@ Result<void> exportContent(const store::Case& source, store::Content content,
         }
         case store::Content::centerline: {
             const auto centerline = TRY(source.readCenterline(arguments.product));
-            return writeTextFile(arguments.file, centerlineCsv(centerline));
+            return writeDurably(arguments.file, centerlineCsv(centerline));
         }
         case store::Content::mesh: {
             const auto mesh = TRY(source.readMesh(arguments.product));
@@ -119,7 +120,7 @@ Result<void> exportContent(const store::Case& source, store::Content content,
             return exportFlatMap(source, arguments);
         case store::Content::text: {
             const auto text = TRY(source.readText(arguments.product));
-            return writeTextFile(arguments.file, text);
+            return writeDurably(arguments.file, text);
         }
     }
     return fail(ErrorKind::unsupported, "there is no file format for this product",

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "flatten/general/surface_flattening.h"
 #include "mesh/flat_map_file.h"
 #include "mesh/mesh_file.h"
@@ -176,7 +177,7 @@ Result<void> runFlatten(const FlattenArguments& arguments) {
     TRY(mesh::writeFlatMap(arguments.out, flat->map));
     tell(mesh, *flat, options.areaWeight);
     if (arguments.report.empty()) return {};
-    return writeTextFile(arguments.report, reportOf(mesh, *flat).dump(2) + "\n");
+    return writeDurably(arguments.report, reportOf(mesh, *flat).dump(2) + "\n");
 }
 
 void checkNames(const FlattenArguments& arguments) {

@@ -4,6 +4,7 @@
 #include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "core/version.h"
 #include "dicom/write_series.h"
 #include "nifti/nifti_file.h"
@@ -245,14 +246,14 @@ Result<void> writeAll(const fs::path& folder, const phantom::Phantom& made,
         .and_then([&] { return nifti::writeNifti(truth / "sites.nii.gz", made.sites); })
         .and_then([&] { return nifti::writeNifti(truth / "untagged.nii.gz", made.untaggedHu); })
         .and_then(
-            [&] { return writeTextFile(truth / "centerline.csv", centerlineCsv(made.centerline)); })
-        .and_then([&] { return writeTextFile(truth / "polyps.json", findingsJson(made.polyps)); })
+            [&] { return writeDurably(truth / "centerline.csv", centerlineCsv(made.centerline)); })
+        .and_then([&] { return writeDurably(truth / "polyps.json", findingsJson(made.polyps)); })
         .and_then([&] {
-            return writeTextFile(truth / "growths.json", phantom::growthsJson(made.growths));
+            return writeDurably(truth / "growths.json", phantom::growthsJson(made.growths));
         })
         .and_then(
-            [&] { return writeTextFile(truth / "structure.json", structureJson(made.structure)); })
-        .and_then([&] { return writeTextFile(truth / "phantom.json", facts.dump(2) + "\n"); });
+            [&] { return writeDurably(truth / "structure.json", structureJson(made.structure)); })
+        .and_then([&] { return writeDurably(truth / "phantom.json", facts.dump(2) + "\n"); });
 }
 
 // Puts the finished folder in its place. What else lies in `out` stays.

@@ -4,6 +4,7 @@
 #include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/durable_file.h"
 #include "pipeline/prepare.h"
 #include "pipeline/scan_identity.h"
 #include "pipeline/source_key.h"
@@ -106,7 +107,7 @@ Result<void> runPrepare(PrepareArguments arguments) {
         auto text = TRY(made->readText(store::product::quality));
         quality = std::move(text);
     }
-    return writeTextFile(arguments.report, reportJson(report, quality));
+    return writeDurably(arguments.report, reportJson(report, quality));
 }
 
 void addSource(CLI::App& command, PrepareArguments& arguments) {

@@ -1,9 +1,9 @@
 #include "cli/text_files.h"
 
 #include "cli/arguments.h"
-#include "store/durable_file.h"
+#include "core/text_file.h"
 
-#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -38,12 +38,6 @@ Result<void> checkOutputFolder(const fs::path& folder) {
     return {};
 }
 
-Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text) {
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-    return store::writeDurably(folder, file.filename().string(), {std::as_bytes(std::span(text))},
-                               0666);
-}
-
 std::string centerlineCsv(const Centerline& centerline) {
     std::string csv = "x_mm,y_mm,z_mm,arc_mm,radius_mm,gap\n";
     for (const CenterlinePoint& p : centerline.points) {
@@ -54,8 +48,7 @@ std::string centerlineCsv(const Centerline& centerline) {
 }
 
 Result<Centerline> readCenterlineCsv(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) return fail(ErrorKind::io, "cannot open", file.string());
+    std::istringstream in(TRY(readTextFile(file)));
     std::string line;
     std::getline(in, line);
     const bool hasGap = line.find(",gap") != std::string::npos;

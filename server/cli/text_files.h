@@ -17,9 +17,6 @@ Result<void> checkOutputFile(const std::filesystem::path& file);
 /// before the work whose files it takes.
 Result<void> checkOutputFolder(const std::filesystem::path& folder);
 
-/// Replaces `file` in one step: a reader sees the old content or the new.
-Result<void> writeTextFile(const std::filesystem::path& file, const std::string& text);
-
 /// A line of names, `x_mm,y_mm,z_mm,arc_mm,radius_mm,gap`, then a line for each sample from the
 /// rectum to the cecum; gap is 0 or 1.
 std::string centerlineCsv(const Centerline& centerline);

@@ -1,11 +1,10 @@
 #include "net/identity.h"
 
-#include "store/durable_file.h"
+#include "core/durable_file.h"
 #include "store/file_lock.h"
 
 #include <memory>
-#include <span>
-#include <string>
+#include <string_view>
 
 #include <openssl/bio.h>
 #include <openssl/ec.h>
@@ -54,10 +53,10 @@ Certificate selfSigned(EVP_PKEY* key) {
     return made ? std::move(certificate) : nullptr;
 }
 
-std::span<const std::byte> content(BIO* memory) {
+std::string_view content(BIO* memory) {
     char* data = nullptr;
     const long bytes = BIO_get_mem_data(memory, &data);
-    return std::as_bytes(std::span(data, std::size_t(bytes)));
+    return {data, std::size_t(bytes)};
 }
 
 }  // namespace
@@ -82,8 +81,8 @@ Result<Identity> identityIn(const fs::path& folder) {
         return fail(ErrorKind::device, "OpenSSL cannot make a certificate", folder);
 
     // The key first: a certificate that is there has its key.
-    TRY(store::writeDurably(folder, "key.pem", {content(keyText.get())}, 0600));
-    TRY(store::writeDurably(folder, "certificate.pem", {content(certificateText.get())}, 0644));
+    TRY(writeDurably(identity.key, content(keyText.get()), 0600));
+    TRY(writeDurably(identity.certificate, content(certificateText.get()), 0644));
     return identity;
 }
 

@@ -1,8 +1,8 @@
 // haustra-server: streams the store's cases to clients.
+#include "core/durable_file.h"
 #include "core/raycasters.h"
 #include "core/version.h"
 #include "net/server.h"
-#include "store/durable_file.h"
 #include "store/lost_pages.h"
 
 #include <cmath>
@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <span>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -105,17 +104,8 @@ void addOptions(CLI::App& program, Arguments& arguments) {
 Result<void> serve(const Arguments& arguments) {
     auto server = TRY(haustra::net::Server::create(arguments.server));
     const auto& address = server->address();
-    if (!arguments.portFile.empty()) {
-        const std::string text = std::to_string(address.port) + "\n";
-        const fs::path folder =
-            arguments.portFile.has_parent_path() ? arguments.portFile.parent_path() : fs::path(".");
-        auto written = haustra::store::writeDurably(folder, arguments.portFile.filename(),
-                                                    {std::as_bytes(std::span(text))});
-        if (!written) {  // as it was given
-            written.error().place = arguments.portFile.string();
-            return written;
-        }
-    }
+    if (!arguments.portFile.empty())
+        TRY(haustra::writeDurably(arguments.portFile, std::to_string(address.port) + "\n"));
     std::printf("listening on %s\ncertificate SHA-256 %s\nrendering with %s\n",
                 toString(address).c_str(), server->fingerprint().c_str(),
                 server->renderer().c_str());

@@ -1,4 +1,5 @@
 // Laws of the core nouns: grids, volumes, meshes, loops over threads.
+#include "core/durable_file.h"
 #include "core/flood_fill.h"
 #include "core/grid.h"
 #include "core/optics.h"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -246,6 +248,54 @@ TEST(TextFile, IsReadWholeOrToldWhatIsWrong) {
     // It opens, and cannot be read.
     EXPECT_EQ(refused("/proc/self/mem").kind, ErrorKind::io);
     EXPECT_EQ(refused("/proc/self/mem").place, "/proc/self/mem");
+    // Of a bound no byte more.
+    EXPECT_EQ(readTextFile(file, much.size()), much);
+    const auto large = readTextFile(file, much.size() - 1);
+    ASSERT_FALSE(large);
+    EXPECT_EQ(large.error().kind, ErrorKind::badInput);
+    const auto endless = readTextFile("/dev/zero", 100'000);
+    ASSERT_FALSE(endless);
+    EXPECT_EQ(endless.error().message, "is larger than 100000 bytes");
+}
+
+// The law: whoever looks sees one of the contents, whole, whatever fails and whoever else writes.
+TEST(DurableFile, IsThereWholeOrAsItWas) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "file";
+    const auto names = [&] {
+        const std::filesystem::directory_iterator all(folder.path());
+        return std::distance(begin(all), end(all));
+    };
+    ASSERT_TRUE(writeDurably(file, "as it was", 0600));
+    EXPECT_EQ(std::filesystem::status(file).permissions(), std::filesystem::perms(0600));
+    const auto failed = writeDurably(file, [](int descriptor) {
+        EXPECT_EQ(::write(descriptor, "half", 4), 4);
+        errno = ENOSPC;
+        return false;
+    });
+    ASSERT_FALSE(failed);
+    EXPECT_EQ(describe(failed.error()), file.string() + ": cannot write: No space left on device");
+    { const DurableFile leftAlone(file); }
+    EXPECT_EQ(readTextFile(file), "as it was");
+    EXPECT_EQ(names(), 1);
+    const auto nowhere = writeDurably(folder.path() / "none" / "file", "text");
+    ASSERT_FALSE(nowhere);
+    EXPECT_EQ(nowhere.error().kind, ErrorKind::io);
+    EXPECT_EQ(nowhere.error().place, (folder.path() / "none" / "file").string());
+
+    {
+        std::vector<std::jthread> writers;
+        for (char letter : {'a', 'b', 'c'})
+            writers.emplace_back([&, letter] {
+                for (int n = 0; n < 50; ++n)
+                    EXPECT_TRUE(writeDurably(file, std::string(10'000, letter)));
+            });
+        for (int n = 0; n < 200; ++n) {
+            const std::string seen = readTextFile(file).value_or("");
+            EXPECT_TRUE(seen == "as it was" || seen == std::string(10'000, seen[0]));
+        }
+    }
+    EXPECT_EQ(names(), 1);
 }
 
 TEST(Parallel, CoversEachIndexOnce) {

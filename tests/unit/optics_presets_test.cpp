@@ -151,7 +151,7 @@ TEST_F(PresetFolder, FilesAreWrittenWholeAndReadBack) {
     write("b.json", std::string((1 << 20) + 1, ' '));
     const auto tooLong = readPresetFile(folder / "b.json");
     ASSERT_FALSE(tooLong);
-    EXPECT_EQ(tooLong.error().kind, ErrorKind::io);
+    EXPECT_EQ(tooLong.error().kind, ErrorKind::badInput);
 }
 
 TEST_F(PresetFolder, ThatIsNotThereIsAFailure) {

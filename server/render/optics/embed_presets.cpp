@@ -1,11 +1,11 @@
 // embed_presets OUT.cpp PRESET.json…: writes builtInPresetTexts() of optics_presets.cpp. Run while
 // building, so that a preset that is not sound never gets into a program.
 #include "core/optics_preset.h"
+#include "core/text_file.h"
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 namespace {
 
@@ -23,15 +23,15 @@ int main(int count, char** arguments) {
     std::string rows;
     for (int n = 2; n < count; ++n) {
         const fs::path path = arguments[n];
-        std::ifstream in(path, std::ios::binary);
-        const std::string text(std::istreambuf_iterator<char>(in), {});
-        const auto preset = haustra::parsePreset(text, path.filename().string());
+        const auto text = haustra::readTextFile(path);
+        if (!text) return fail(describe(text.error()));
+        const auto preset = haustra::parsePreset(*text, path.filename().string());
         if (!preset) return fail(describe(preset.error()));
         if (preset->name != path.stem())
             return fail(path.filename().string() + " has another name");
         if (preset->description.empty()) return fail(preset->name + " has no description");
         rows +=
-            "        {\"" + path.filename().string() + "\", R\"preset(" + text + ")preset\"},\n";
+            "        {\"" + path.filename().string() + "\", R\"preset(" + *text + ")preset\"},\n";
     }
     std::ofstream out(arguments[1], std::ios::binary);
     out << "// Made by embed_presets.\n#include <utility>\n#include <vector>\n\n"
