@@ -12,6 +12,8 @@ namespace haustra::handles {
 namespace {
 
 constexpr std::size_t batchSize = 16;  // fixed, so that the threads' number changes no bound
+constexpr double slack = 1.25;  // how far past the best length a front looks, to rule out places
+constexpr long mostSettled = 12'000'000;  // vertices, by all fronts: an end for very long loops
 
 class Search {
 public:
@@ -74,7 +76,7 @@ private:
         LoopFront& front = work.front;
         auto& sums = work.sums;
         sums[base] = 0;
-        const double lookMm = boundMm * options_.slack;
+        const double lookMm = boundMm * slack;
         const int closing = front.run(
             base, lookMm, [&](int h) { sums[mesh_.target(h)] = sums[mesh_.origin(h)] ^ marks_[h]; },
             [&](int h) {
@@ -158,8 +160,8 @@ std::vector<int> crossings(const mesh::HalfedgeMesh& mesh,
 mesh::Loop shortestLoop(const mesh::HalfedgeMesh& mesh, const std::vector<std::uint64_t>& marks,
                         const std::vector<int>& near, const LoopSearchOptions& options) {
     Search search(mesh, marks, options);
-    search.visit(near, options.effort / 2);
-    search.visit(crossings(mesh, marks), options.effort);
+    search.visit(near, mostSettled / 2);
+    search.visit(crossings(mesh, marks), mostSettled);
     search.settle();
     return search.best();
 }

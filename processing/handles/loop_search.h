@@ -10,10 +10,6 @@ namespace haustra::handles {
 
 struct LoopSearchOptions {
     int threads = 0;
-    double slack = 1.25;  ///< how far past the best length a front looks, to know where not to look
-    /// Vertices to settle in all before the best loop so far is taken as it is: reached only where
-    /// the shortest loop is some hundreds of edges long.
-    long effort = 12'000'000;
     /// Loops whose marks add up to one of these are passed over, as if they separated.
     std::vector<std::uint64_t> passOver;
 };
@@ -21,9 +17,10 @@ struct LoopSearchOptions {
 /// The shortest loop along edges that does not separate the surface (by `marks`, see
 /// homologyMarks). `near` are vertices that loops of a coarser mesh pass, best first: what is found
 /// through them bounds the search, which then visits the vertices where marked edges start, since
-/// every loop that counts crosses such an edge. A front that closes nothing within `slack` times
+/// every loop that counts crosses such an edge. A front that closes nothing within 1.25 times
 /// the bound rules out the base vertices close round its own. Empty where every loop separates, or
-/// none is short of infinity. The same loop for any number of threads.
+/// none is short of infinity. Where the shortest is some hundreds of edges long, the best that has
+/// been found by then may be taken as it is. The same loop for any number of threads.
 mesh::Loop shortestLoop(const mesh::HalfedgeMesh& mesh, const std::vector<std::uint64_t>& marks,
                         const std::vector<int>& near, const LoopSearchOptions& options = {});
 

@@ -51,13 +51,4 @@ Tube::Place Tube::at(glm::dvec3 p) const {
     return best;
 }
 
-bool Tube::mayReach(glm::dvec3 centre, double radiusMm) const {
-    if (nodes_.empty()) return false;
-    const glm::ivec3 lo =
-        glm::max(glm::ivec3(glm::floor((centre - radiusMm - lowMm_) / cellMm)), glm::ivec3(0));
-    const glm::ivec3 hi =
-        glm::min(glm::ivec3(glm::floor((centre + radiusMm - lowMm_) / cellMm)), cells_ - 1);
-    return anyInBox(lo, hi, [&](glm::ivec3 cell) { return !segments_[indexOf(cell)].empty(); });
-}
-
 }  // namespace haustra::phantom

@@ -30,8 +30,6 @@ public:
     const std::vector<Node>& nodes() const { return nodes_; }
     double lengthMm() const { return arcs_.empty() ? 0.0 : arcs_.back(); }
     Place at(glm::dvec3 p) const;
-    /// Whether a ball may come within reach of the tube (yes, where in doubt).
-    bool mayReach(glm::dvec3 centre, double radiusMm) const;
 
 private:
     std::size_t indexOf(glm::ivec3 cell) const {

@@ -37,10 +37,7 @@ public:
     /// called.
     bool moving() const { return moving_; }
     void rest() { moving_ = false; }
-    /// Its pictures show what lies beneath the wall, laid over another's: they have no paint, and
-    /// show nothing of the wall itself.
-    bool isLens() const { return lens_; }
-    /// Its pictures have the wall's paint.
+    /// Its pictures have the wall's paint; those of what lies beneath the wall have none.
     bool isPainted() const { return showsWall(view_) && !lens_; }
     int width() const { return width_; }
     int height() const { return height_; }
