@@ -1,5 +1,6 @@
 #include "reader/incoming_messages.h"
 
+#include "core/case_name.h"
 #include "core/flat_map.h"
 #include "link/peer_text.h"
 #include "protocol/optics_message.h"
@@ -28,14 +29,6 @@ bool isWithin(double value, double low, double high) {
 }
 bool isArc(double mm) {
     return isWithin(mm, -maxCoordinateMm, maxCoordinateMm);
-}
-bool isCaseName(const std::string& name) {
-    const auto allowed = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-               c == '.' || c == '_' || c == '-';
-    };
-    return !name.empty() && name.size() <= maxNameBytes && name[0] != '.' &&
-           std::all_of(name.begin(), name.end(), allowed);
 }
 bool isVisibleAscii(const std::string& text, std::size_t mostBytes) {
     return text.size() <= mostBytes &&

@@ -1,5 +1,6 @@
 #include "store/case_store.h"
 
+#include "core/case_name.h"
 #include "core/durable_file.h"
 #include "store/case_index.h"
 #include "store/file_lock.h"
@@ -170,13 +171,6 @@ void Case::sweep(const std::vector<ProductEntry>& kept) const {
     }
     for (const fs::path& file : rubbish)
         fs::remove(file, ignored);
-}
-
-bool isCaseName(std::string_view name) {
-    constexpr std::string_view allowed =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
-    return !name.empty() && name.size() <= 64 && name[0] != '.' &&
-           name.find_first_not_of(allowed) == std::string_view::npos;
 }
 
 Result<CaseStore> CaseStore::open(const fs::path& folder, bool create) {

@@ -151,10 +151,6 @@ private:
     std::optional<ScanIdentity> bound_;  // what is published is of it
 };
 
-/// True where `name` can name a case: 1…64 of letters, digits, '.', '_', '-', not starting with
-/// '.'.
-bool isCaseName(std::string_view name);
-
 /// A store of cases. Immutable: safe from any number of threads.
 class CaseStore {
 public:

@@ -4,6 +4,7 @@
 #include "cli/number_range.h"
 #include "cli/progress_bar.h"
 #include "cli/text_files.h"
+#include "core/case_name.h"
 #include "core/durable_file.h"
 #include "pipeline/prepare.h"
 #include "pipeline/scan_identity.h"
@@ -41,7 +42,7 @@ Result<std::string> defaultCaseName(const pipeline::PrepareOptions& options) {
 }
 
 std::string checkCaseName(const std::string& name) {
-    return store::isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
+    return isCaseName(name) ? std::string() : "not a case name: \"" + name + "\"";
 }
 
 // `quality` is the case's product of that name; empty where it has none.

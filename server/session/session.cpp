@@ -1,5 +1,6 @@
 #include "session/session.h"
 
+#include "core/case_name.h"
 #include "protocol/capabilities.h"
 #include "protocol/view_message.h"
 #include "session/case_presets.h"
@@ -225,7 +226,7 @@ void Session::listedCases(std::uint64_t request, Result<std::vector<CaseSummary>
 void Session::handle(const protocol::OpenCase& message) {
     if (state_ == State::opening)
         return refuse(ErrorReport::BAD_STATE, "another case is being opened");
-    if (!store::isCaseName(message.name()))
+    if (!isCaseName(message.name()))
         return refuse(ErrorReport::NO_SUCH_CASE, "this is no case's name");
     leaveCase();
     state_ = State::opening;

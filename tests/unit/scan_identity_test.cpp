@@ -1,6 +1,7 @@
 // Whose case it is: a case is of one scan, and is never another's by its name.
 #include "pipeline/scan_identity.h"
 
+#include "core/case_name.h"
 #include "core/source_series.h"
 #include "dicom/write_series.h"
 #include "pipeline/source_key.h"
@@ -177,7 +178,7 @@ TEST_F(WhoseCase, ADefaultNameIsTheScansAndNoFoldersOrPatients) {
     EXPECT_NE(defaultCaseName(a), defaultCaseName(other));
     for (const auto& scan : {a, prone, other, identityOf(ctFile())}) {
         const std::string name = defaultCaseName(scan);
-        EXPECT_TRUE(store::isCaseName(name)) << name;
+        EXPECT_TRUE(isCaseName(name)) << name;
         EXPECT_EQ(name.find("SECRET"), std::string::npos);
         EXPECT_EQ(name.find("DICOM"), std::string::npos);
     }
