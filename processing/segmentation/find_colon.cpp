@@ -25,9 +25,8 @@
 namespace haustra::segmentation {
 namespace {
 
-void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
-    const Grid& grid = contents.content.grid();
-    const auto voxels = contents.content.writable();
+template <class Visit>
+void visitBalls(const Grid& grid, const std::vector<CutBall>& balls, const Visit& visit) {
     for (const CutBall& ball : balls) {
         const glm::dvec3 centre = grid.voxelFromPatientPoint(ball.centreMm);
         const glm::ivec3 reach = glm::ivec3(ball.radiusMm / grid.spacingMm()) + 1;
@@ -36,9 +35,26 @@ void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
         visitBox(lo, hi, [&](glm::ivec3 v) {
             if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), ball.centreMm) <=
                 ball.radiusMm)
-                voxels[grid.index(v)] = std::uint8_t(Content::tissue);
+                visit(grid.index(v));
         });
     }
+}
+
+void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
+    const auto voxels = contents.content.writable();
+    visitBalls(contents.content.grid(), balls,
+               [&](std::size_t n) { voxels[n] = std::uint8_t(Content::tissue); });
+}
+
+// The scan with walls where a person cuts, so that what a cut parts from the room's air is none.
+Volume<std::int16_t> walledOff(const Volume<std::int16_t>& hu, const std::vector<CutBall>& balls,
+                               double wallHu) {
+    if (balls.empty()) return hu.share();
+    Volume<std::int16_t> walled = hu.clone();
+    const auto voxels = walled.writable();
+    visitBalls(hu.grid(), balls,
+               [&](std::size_t n) { voxels[n] = std::int16_t(std::lround(wallHu)); });
+    return walled;
 }
 
 // The piece at a patient point, or within 3 mm of it.
@@ -62,7 +78,8 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     if (piece < 0) {
         return fail(ErrorKind::badInput,
                     "there is no air or fluid of a lumen within 3 mm of this point, or its gas is "
-                    "open to the air around the patient",
+                    "open to the air around the patient: where it opens, as at a stoma, set up a "
+                    "wall (--cut)",
                     printed("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
     }
     return piece;
@@ -249,7 +266,9 @@ struct Course {
 
 // What may be why nothing was found.
 std::string alsoTold(const BowelContents& contents) {
-    std::string told;
+    std::string told =
+        "; gas that is open to the room, as through a stoma, counts as the room's: set up a wall "
+        "where it opens (--cut X,Y,Z,R)";
     for (const std::string& warning : contents.warnings)
         told += "; " + warning;
     return told;
@@ -369,7 +388,9 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     const glm::ivec3 by = binningOf(scan.hu.grid());
     Surroundings among;
     among.hu = binned(scan.hu, by, options.threads);
-    among.contents = contentsOf(scan, among.hu, tissue, options.threads);
+    among.contents =
+        contentsOf(scan, walledOff(among.hu, options.edits.cuts, tissue.meanHu[int(Tissue::soft)]),
+                   tissue, options.threads);
     takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
     const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);

@@ -32,8 +32,9 @@ struct FoundColon {
 /// thin wall and way through soft tissue between two of them is a junction with odds
 /// (makePieceGraph); the colon is the most likely chain of pieces by place in the body, calibre and
 /// junctions (findChains); what is on it, or is a sac of it, is lumen, and no other bowel is
-/// (layLabels). Walls that touching loops share are rebuilt; a collapse is crossed by a bridge
-/// through soft tissue.
+/// (layLabels). What a person cuts is a wall from the first on: gas that it parts from the room's
+/// air, as at a stoma, is bowel's. Walls that touching loops share are rebuilt; a collapse is
+/// crossed by a bridge through soft tissue.
 ///
 /// Fails where the scan has no bowel gas, or too little of a distended colon for a virtual
 /// colonoscopy, unless a seed says otherwise (noResult); where a point of the edits has neither gas

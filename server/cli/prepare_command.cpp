@@ -165,9 +165,11 @@ void addEdits(CLI::App& command, pipeline::PrepareOptions& options) {
     addPointsOption(command, "--exclude", options.excludesMm,
                     "The air or fluid at this point (LPS, mm) is not the organ; may be repeated")
         ->excludes(lumen);
-    addBallsOption(command, "--cut", options.cuts,
-                   "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
-                   "given): a wall that the scan does not show; may be repeated")
+    addBallsOption(
+        command, "--cut", options.cuts,
+        "There is no lumen in the ball at this point (LPS, mm; 3 mm where no radius is "
+        "given): a wall that the scan does not show, as where a stoma is open to the room; may "
+        "be repeated")
         ->excludes(lumen);
     addPairsOption(
         command, "--join", options.joins,

@@ -930,6 +930,31 @@ TEST(FindColon, AScanThatIsNoColonographyIsRefusedUnlessAPersonSaysOtherwise) {
     EXPECT_GT(labelledMl(*asked, [&](glm::dvec3 p) { return outsideMm(bubble, p) < 0.0; }), 20.0);
 }
 
+// Gas that is open to the room, as through a stoma, is the room's, but for what a cut parts from
+// it.
+TEST(FindColon, ACutPartsAnOpenStomaFromTheRoom) {
+    const Capsule stoma{{264, 147, 200}, {330, 147, 200}, 10};
+    Drawing drawing = Drawing::supine();
+    drawing.paint(-990, [&](glm::dvec3 p) {
+        return outsideMm(stoma, p) < 0.0 && !(inColon(p) && p.y >= levelMm);
+    });
+    const auto open = find(drawing.scan());
+    ASSERT_FALSE(open);
+    EXPECT_NE(open.error().message.find("as through a stoma"), std::string::npos);
+    EXPECT_NE(open.error().message.find("--cut"), std::string::npos);
+    ColonOptions options;
+    options.edits.cuts = {{{300, 147, 200}, 12.0}};
+    const auto cut = find(drawing.scan(), options);
+    ASSERT_TRUE(cut) << describe(cut.error());
+    const CutBall& ball = options.edits.cuts[0];
+    const auto inside = [&](glm::dvec3 p) {
+        return inColon(p) || (outsideMm(stoma, p) < 0.0 && p.x < ball.centreMm.x &&
+                              glm::distance(p, ball.centreMm) > ball.radiusMm);
+    };
+    EXPECT_GT(diceWithDrawing(*cut, inside), 0.98);
+    EXPECT_EQ(labelledMl(*cut, [&](glm::dvec3 p) { return p.x > ball.centreMm.x; }), 0.0);
+}
+
 TEST(FindColon, IsTheSameForAnyNumberOfThreads) {
     const CtScan scan = Drawing::supine().scan();
     ColonOptions one, three;
