@@ -70,6 +70,11 @@ struct LeftOutBody {
     double distanceMm = 0.0;  ///< from its centre to the nearest piece's centre, less both radii
     bool opens = false;       ///< a door between it and the colon had to be closed
     bool likeColon = false;   ///< as wide as colon, and likely to be by its place and folds
+    /// It lies at the course, or something speaks for colon.
+    bool isNear() const {
+        constexpr double nearMm = 20.0;
+        return opens || likeColon || distanceMm < nearMm;
+    }
 };
 
 /// A wall too thin for the scan to show whole, set up again.
@@ -115,7 +120,7 @@ struct ColonRecord {
     double chainConfidence = 0.0;      ///< that it is right among those that were weighed
     std::vector<Doubt> doubts;         ///< the gravest first
     std::vector<RunnerUp> runnersUp;   ///< none or one
-    std::vector<LeftOutBody> leftOut;  ///< near the chain or like colon, and no part of
+    std::vector<LeftOutBody> leftOut;  ///< near the chain, like colon or much gas, and no part of
                                        ///< the lumen; the largest first
     /// The lowest place of the last piece, in the trunk: x from −1 (the patient's right side) to 1,
     /// y from −1 (front) to 1, z from 0 (the lowest bowel) to 1 (the highest).

@@ -88,7 +88,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
     }
     for (const LeftOutBody& body : record.leftOut) {
         constexpr double tellMl = 5.0, muchMl = 25.0;
-        if (body.content != BodyContent::gas || body.volumeMl < tellMl) continue;
+        if (body.content != BodyContent::gas || !body.isNear() || body.volumeMl < tellMl) continue;
         doubt(0.03 * std::min(1.0, body.volumeMl / muchMl) + (body.opens ? 0.05 : 0.0),
               printed("%.0f ml of gas near the %s may be colon", body.volumeMl,
                       toString(body.nearest)));

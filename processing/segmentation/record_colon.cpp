@@ -223,8 +223,17 @@ private:
         return body;
     }
 
+    // Far from the course fluid may be a bladder, and what is bright bone. Wide gas in the trunk is
+    // the stomach's, bowel's or free, and nothing but a person's word tells which.
+    bool isMuchGas(const LeftOutBody& body, const ChainNode& node) const {
+        constexpr double leastMl = 25.0, leastRadiusMm = 8.0, mostAside = 1.1;
+        const glm::dvec3 at = glm::abs(graph_.frame.place(body.centreMm));
+        return body.content == BodyContent::gas && node.given >= 0.0 && body.volumeMl >= leastMl &&
+               node.radiusMm >= leastRadiusMm && at.x <= mostAside && at.y <= mostAside;
+    }
+
     void findLeftOut() {
-        constexpr double leastMl = 2.0, nearMm = 20.0;
+        constexpr double leastMl = 2.0;
         const std::set<int> taken = nodesOf(chain_);
         std::set<int> opened;
         for (const int j : chain_.cuts) {
@@ -237,8 +246,7 @@ private:
             if (isTakenIn(pieceOf(int(n)))) continue;
             LeftOutBody body = leftOut(pieceOf(int(n)), opened.count(int(n)) > 0);
             body.likeColon = looksLikeColon(node);
-            if (body.opens || body.distanceMm < nearMm || body.likeColon)
-                made_.leftOut.push_back(body);
+            if (body.isNear() || isMuchGas(body, node)) made_.leftOut.push_back(body);
         }
         // Whatever it is, it may be the way on.
         for (const std::int32_t p : graph_.tooBright) {
@@ -354,10 +362,33 @@ private:
         }
     }
 
+    static bool isFarGas(const LeftOutBody& body) {
+        return body.content == BodyContent::gas && !body.isNear();
+    }
+
+    static constexpr std::size_t mostPlaces = 6;  // that a line names
+
+    void sayFarGas() {
+        double sumMl = 0.0;
+        std::size_t bodies = 0;
+        std::string places;
+        for (const LeftOutBody& body : made_.leftOut) {
+            if (!isFarGas(body)) continue;
+            sumMl += body.volumeMl;
+            if (++bodies <= mostPlaces)
+                places += (places.empty() ? "" : ", ") + placeText(body.centreMm);
+        }
+        if (bodies == 0) return;
+        made_.warnings.push_back(
+            printed("%.0f ml of gas away from the course were taken for the stomach's, other "
+                    "bowel's or free, at ",
+                    sumMl) +
+            places + (bodies > mostPlaces ? " and elsewhere" : ""));
+    }
+
     // Bodies of one kind near one part in one line, the largest first.
     void sayLeftOut() {
         constexpr double tellMl = 5.0;
-        constexpr std::size_t mostPlaces = 6;
         std::vector<bool> said(made_.leftOut.size(), false);
         for (std::size_t n = 0; n < said.size(); ++n) {
             const LeftOutBody& first = made_.leftOut[n];
@@ -368,7 +399,7 @@ private:
                 const LeftOutBody& body = made_.leftOut[m];
                 if (said[m] || body.content != first.content || body.nearest != first.nearest ||
                     body.opens != first.opens || body.likeColon != first.likeColon ||
-                    (!body.opens && body.volumeMl < tellMl))
+                    (!body.opens && body.volumeMl < tellMl) || isFarGas(body))
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
@@ -440,6 +471,7 @@ private:
         for (const std::string& warning : contents_.warnings)
             say(warning);
         sayLeftOut();
+        sayFarGas();
         sayUnseenTagging();
         for (const RebuiltWallRecord& wall : made_.walls) {
             constexpr double tellMm2 = 20.0;

@@ -141,6 +141,9 @@ TEST(CourseDoubts, EachFactLowersTheConfidenceAndTheGravestComesFirst) {
     EXPECT_FALSE(lowers([](ColonRecord& r) {
         r.leftOut.push_back({{}, 3.0, BodyContent::gas, {}, 3.0, false});
     }));
+    EXPECT_FALSE(lowers([](ColonRecord& r) {
+        r.leftOut.push_back({{}, 200.0, BodyContent::gas, {}, 60.0, false});
+    }));
     EXPECT_FALSE(lowers([](ColonRecord& r) { r.walls.push_back({{}, 200.0, false}); }));
     EXPECT_FALSE(lowers([](ColonRecord& r) { r.maskInSoftTissue = 0.03; }));
 }

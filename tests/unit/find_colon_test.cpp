@@ -648,6 +648,29 @@ TEST(FindColon, ColonThatTheCourseDoesNotReachIsTold) {
     EXPECT_LT(found->record.confidence, 0.7);
 }
 
+// Gas that lies far from the course, and not as colon does, is told where there is much of it; it
+// is no reason to doubt the course.
+TEST(FindColon, MuchGasFarFromTheCourseIsTold) {
+    const Drawing drawing = Drawing::supine();
+    const Capsule loop{{150, 150, 190}, {175, 150, 205}, 13};
+    const auto inLoop = [&](glm::dvec3 p) { return outsideMm(loop, p) < 0.0; };
+    const std::string line = "ml of gas away from the course";
+    const auto without = find(drawing.scan());
+    ASSERT_TRUE(without) << describe(without.error());
+    EXPECT_FALSE(tells(*without, line));
+    Drawing withLoop = Drawing::supine();
+    withLoop.paint(-988, inLoop);
+    ColonOptions options;
+    for (const bool excluded : {false, true}) {
+        if (excluded) options.edits.excludesMm = {loop.a};
+        const auto found = find(withLoop.scan(), options);
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_EQ(labelledMl(*found, inLoop), 0.0);
+        EXPECT_EQ(tells(*found, line), !excluded);
+        if (!excluded) EXPECT_NEAR(found->record.confidence, without->record.confidence, 1e-3);
+    }
+}
+
 // A person's word about a place that is known for fluid only once the pool is found.
 TEST(FindColon, AnExcludedOrCutPoolStaysOut) {
     const auto water = [](glm::dvec3 p) { return inColon(p) && p.y >= 140.0 && p.x < 120; };
