@@ -368,8 +368,9 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
     if (course.missing) return tl::make_unexpected(*course.missing);
     progress(0.9);
     FoundColon found;
-    found.record = recordColon(among.contents, course.cut, course.graph, course.chains,
-                               course.labels, untagged, among.source);
+    found.record = recordColon(
+        among.contents, course.cut, course.graph, course.chains, course.labels, untagged,
+        metalAtLumen(among.hu, course.labels.labels, options.threads), among.source);
     found.labels = std::move(course.labels.labels);
     found.gravity = among.contents.gravity;
     found.notes = among.contents.notes;

@@ -5,57 +5,83 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 namespace haustra::segmentation {
+namespace {
 
-std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
-                                   const Volume<std::uint8_t>& content, int threads) {
-    constexpr int brighterThanBoneHu = 2500;  // compact bone has 2000 at most
+/// Pieces of these voxels, joined by corners too as the wires of a mesh are, the largest first.
+std::vector<BrightBody> bodiesOf(const std::vector<std::uint32_t>& bright, const Grid& grid) {
     constexpr double leastMl = 0.3;
-    constexpr std::size_t mostPlaces = 4;
-    const Grid& grid = hu.grid();
-    const auto bright = voxelsWhere(grid, threads, [&](std::size_t n, glm::ivec3) {
-        return hu[n] > brighterThanBoneHu && Content(content[n]) != Content::beyond;
-    });
-    if (bright.empty()) return std::nullopt;
+    std::vector<BrightBody> bodies;
+    if (bright.empty()) return bodies;
     Volume<std::uint8_t> left(grid, std::uint8_t(0));
     const auto isLeft = left.writable();
     for (const std::uint32_t n : bright)
         isLeft[n] = 1;
-    struct Piece {
-        glm::dvec3 placeMm;
-        double ml;
-    };
-    std::vector<Piece> pieces;
     for (const std::size_t first : bright) {
         if (!std::exchange(isLeft[first], std::uint8_t(0))) continue;
         std::vector<std::size_t> body{first};
         glm::dvec3 sum(0.0);
         for (std::size_t m = 0; m < body.size(); ++m) {
-            sum += glm::dvec3(grid.voxelAt(body[m]));
-            visitFaces(grid, body[m], [&](std::size_t next, int) {
-                if (std::exchange(isLeft[next], std::uint8_t(0))) body.push_back(next);
-            });
+            const glm::ivec3 v = grid.voxelAt(body[m]);
+            sum += glm::dvec3(v);
+            visitBox(glm::max(v - 1, glm::ivec3(0)), glm::min(v + 1, grid.size - 1),
+                     [&](glm::ivec3 beside) {
+                         const std::size_t next = grid.index(beside);
+                         if (std::exchange(isLeft[next], std::uint8_t(0))) body.push_back(next);
+                     });
         }
         const double ml = double(body.size()) * grid.voxelVolumeMm3() / 1000.0;
         if (ml >= leastMl)
-            pieces.push_back({grid.patientFromVoxelPoint(sum / double(body.size())), ml});
+            bodies.push_back({grid.patientFromVoxelPoint(sum / double(body.size())), ml});
     }
-    if (pieces.empty()) return std::nullopt;
-    std::stable_sort(pieces.begin(), pieces.end(),
-                     [](const Piece& a, const Piece& b) { return a.ml > b.ml; });
+    std::stable_sort(bodies.begin(), bodies.end(),
+                     [](const BrightBody& a, const BrightBody& b) { return a.ml > b.ml; });
+    return bodies;
+}
+
+}  // namespace
+
+std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
+                                   const Volume<std::uint8_t>& content, int threads) {
+    constexpr int brighterThanBoneHu = 2500;  // compact bone has 2000 at most
+    constexpr std::size_t mostPlaces = 4;
+    const auto bodies = bodiesOf(voxelsWhere(hu.grid(), threads,
+                                             [&](std::size_t n, glm::ivec3) {
+                                                 return hu[n] > brighterThanBoneHu &&
+                                                        Content(content[n]) != Content::beyond;
+                                             }),
+                                 hu.grid());
+    if (bodies.empty()) return std::nullopt;
     double allMl = 0.0;
     std::string places;
-    for (std::size_t n = 0; n < pieces.size(); ++n) {
-        allMl += pieces[n].ml;
-        if (n < mostPlaces) places += (n == 0 ? "" : ", ") + placeText(pieces[n].placeMm);
+    for (std::size_t n = 0; n < bodies.size(); ++n) {
+        allMl += bodies[n].ml;
+        if (n < mostPlaces) places += (n == 0 ? "" : ", ") + placeText(bodies[n].placeMm);
     }
     return printed(
                "%.1f ml are brighter than bone, metal or thick barium: at the height of their "
                "streaks walls and fluid may be wrong or missing, at ",
                allMl) +
-           places + (pieces.size() > mostPlaces ? " and elsewhere" : "");
+           places + (bodies.size() > mostPlaces ? " and elsewhere" : "");
+}
+
+std::vector<BrightBody> metalAtLumen(const Volume<std::int16_t>& hu,
+                                     const Volume<std::uint8_t>& labels, int threads) {
+    constexpr int blurredWireHu = 1500;
+    constexpr double reachMm = 3.0;
+    const Grid& grid = hu.grid();
+    const glm::ivec3 reach(reachMm / grid.spacingMm());
+    return bodiesOf(
+        voxelsWhere(grid, threads,
+                    [&](std::size_t n, glm::ivec3 v) {
+                        return hu[n] > blurredWireHu &&
+                               anyInBox(glm::max(v - reach, glm::ivec3(0)),
+                                        glm::min(v + reach, grid.size - 1), [&](glm::ivec3 w) {
+                                            return LumenLabel(labels.at(w)) != LumenLabel::outside;
+                                        });
+                    }),
+        grid);
 }
 
 }  // namespace haustra::segmentation

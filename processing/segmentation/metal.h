@@ -1,10 +1,11 @@
-// Metal in the body, whose streaks a reader must allow for.
+// Metal in the body, whose streaks a reader must allow for, and metal in the colon's wall.
 #pragma once
 
 #include "segmentation/bowel_contents.h"
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace haustra::segmentation {
 
@@ -13,5 +14,17 @@ namespace haustra::segmentation {
 /// It names the largest places. The same for any number of threads.
 std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
                                    const Volume<std::uint8_t>& content, int threads);
+
+struct BrightBody {
+    glm::dvec3 placeMm;  ///< patient, LPS: its middle
+    double ml = 0.0;
+};
+
+/// What is brighter than 1500 HU within 3 mm of the lumen (LumenLabel, on the same grid), 0.3 ml or
+/// more in one piece, the largest first: a stent's mesh, clips, or barium that has thickened.
+/// Blurred wires are no brighter than compact bone, but bone does not lie there. The same for any
+/// number of threads.
+std::vector<BrightBody> metalAtLumen(const Volume<std::int16_t>& hu,
+                                     const Volume<std::uint8_t>& labels, int threads);
 
 }  // namespace haustra::segmentation

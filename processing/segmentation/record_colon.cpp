@@ -68,7 +68,8 @@ class Recorder {
 public:
     Recorder(const BowelContents& contents, const TubePieces& cut, const PieceGraph& graph,
              const std::vector<ColonChain>& chains, const ColonLabels& labels,
-             const std::vector<UntaggedLevel>& untagged, const Source& source)
+             const std::vector<UntaggedLevel>& untagged, const std::vector<BrightBody>& metal,
+             const Source& source)
         : contents_(contents),
           cut_(cut),
           graph_(graph),
@@ -76,6 +77,7 @@ public:
           chain_(chains.front()),
           labels_(labels),
           untagged_(untagged),
+          metal_(metal),
           source_(source) {}
 
     ColonRecord record() {
@@ -419,6 +421,21 @@ private:
         }
     }
 
+    void sayMetal() {
+        std::map<ColonPart, std::pair<double, std::string>> told;
+        for (const BrightBody& body : metal_) {
+            auto& [sumMl, places] = told[partAt(body.placeMm)];
+            sumMl += body.ml;
+            places += (places.empty() ? "" : ", ") + placeText(body.placeMm);
+        }
+        for (const auto& [part, what] : told)
+            made_.warnings.push_back(
+                printed("%.1f ml at the wall of the %s are as bright as metal, as of a stent, or "
+                        "thick barium: what lies there is not seen, at ",
+                        what.first, toString(part)) +
+                what.second);
+    }
+
     // Tagged fluid that stands nowhere under gas in the whole scan may be bone beside a pool.
     void sayUnseenTagging() {
         constexpr double tellMl = 2.0;
@@ -470,6 +487,7 @@ private:
         // follow each other, and metal.
         for (const std::string& warning : contents_.warnings)
             say(warning);
+        sayMetal();
         sayLeftOut();
         sayFarGas();
         sayUnseenTagging();
@@ -543,6 +561,7 @@ private:
     const ColonChain& chain_;
     const ColonLabels& labels_;
     const std::vector<UntaggedLevel>& untagged_;
+    const std::vector<BrightBody>& metal_;
     const Source& source_;
     ColonRecord made_;
 };
@@ -552,8 +571,8 @@ private:
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
                         const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
-                        const Source& source) {
-    return Recorder(contents, cut, graph, chains, labels, untagged, source).record();
+                        const std::vector<BrightBody>& metal, const Source& source) {
+    return Recorder(contents, cut, graph, chains, labels, untagged, metal, source).record();
 }
 
 }  // namespace haustra::segmentation

@@ -6,6 +6,7 @@
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_chain.h"
 #include "segmentation/colon_labels.h"
+#include "segmentation/metal.h"
 #include "segmentation/tube_pieces.h"
 #include "segmentation/untagged_levels.h"
 
@@ -23,10 +24,10 @@ struct Source {
 };
 
 /// Of the first of `chains` (not empty), whose weights by their scores are the confidence among
-/// them. `untagged` are the levels whose fluid is not in the lumen.
+/// them. `untagged` are the levels whose fluid is not in the lumen, `metal` is metalAtLumen of it.
 ColonRecord recordColon(const BowelContents& contents, const TubePieces& cut,
                         const PieceGraph& graph, const std::vector<ColonChain>& chains,
                         const ColonLabels& labels, const std::vector<UntaggedLevel>& untagged,
-                        const Source& source);
+                        const std::vector<BrightBody>& metal, const Source& source);
 
 }  // namespace haustra::segmentation

@@ -285,6 +285,25 @@ TEST(FindColon, TellsMetal) {
     EXPECT_TRUE(tells(*found, "at (60, 180, 40) mm"));
 }
 
+// The wires of a stent are thinner than voxels, and so no brighter than compact bone, which is told
+// nowhere: it lies on the lumen's wall.
+TEST(FindColon, TellsAStentsMeshAtTheLumenAndNoBone) {
+    const Capsule& descending = colon()[3];
+    for (const double offMm : {0.0, 14.0}) {
+        Drawing drawing = Drawing::supine();
+        drawing.paint(1700, [&](glm::dvec3 p) {
+            const bool wire = int(std::floor(p.z / 5.0) + std::floor(p.y / 5.0)) % 2 == 0;
+            return wire && p.z > 180 && p.z < 240 &&
+                   std::abs(outsideMm(descending, p) - offMm) < 1.5;
+        });
+        const auto found = find(drawing.scan());
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_EQ(tells(*found, "are as bright as metal"), offMm == 0.0);
+        EXPECT_EQ(tells(*found, "at (264, 146, 210) mm"), offMm == 0.0) << "its middle";
+        EXPECT_FALSE(tells(*found, "brighter than bone"));
+    }
+}
+
 // 300 to 900 HU are the best; little of it may not be told from tissue at all.
 TEST(FindColon, TellsHowWeakTheTaggingIs) {
     for (const double hu : {620.0, 150.0}) {
@@ -667,7 +686,9 @@ TEST(FindColon, MuchGasFarFromTheCourseIsTold) {
         ASSERT_TRUE(found) << describe(found.error());
         EXPECT_EQ(labelledMl(*found, inLoop), 0.0);
         EXPECT_EQ(tells(*found, line), !excluded);
-        if (!excluded) EXPECT_NEAR(found->record.confidence, without->record.confidence, 1e-3);
+        if (!excluded) {
+            EXPECT_NEAR(found->record.confidence, without->record.confidence, 1e-3);
+        }
     }
 }
 
