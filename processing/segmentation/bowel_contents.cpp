@@ -106,6 +106,50 @@ std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> fro
     return reached;
 }
 
+// What of the outside cells no way within a slice leads to from the room's at the field's sides, in
+// bodies of 100 ml and more; the mouth lies between slices.
+std::vector<EnclosedRoomAir> enclosedRoomAir(const Cells& cells, const Grid& grid,
+                                             const std::vector<std::size_t>& room,
+                                             const std::vector<std::uint8_t>& outside) {
+    constexpr double leastMl = 100.0;
+    std::vector<std::uint8_t> left = outside;
+    const auto take = [&](std::size_t n) { return std::exchange(left[n], std::uint8_t(0)) != 0; };
+    std::vector<std::size_t> open = room;
+    for (const std::size_t n : open)
+        left[n] = 0;
+    const auto inSlice = [&](std::size_t n, const auto& visit) {
+        visitFaces(cells.grid, n, [&](std::size_t next, int axis) {
+            if (axis < 2) visit(next);
+        });
+    };
+    floodFill(open, inSlice, take);
+    const std::vector<std::uint8_t> enclosed = left;
+    const auto placeMm = [&](glm::dvec3 cell) {
+        return grid.patientFromVoxelPoint((cell + 0.5) * glm::dvec3(cells.block) - 0.5);
+    };
+    const glm::dvec3 cellMm = grid.spacingMm() * glm::dvec3(cells.block);
+    std::vector<EnclosedRoomAir> all;
+    for (std::size_t n = 0; n < cells.count(); ++n) {
+        if (!take(n)) continue;
+        std::vector<std::size_t> body{n};
+        floodFill(body, faceNeighbours(cells.grid), take);
+        glm::dvec3 sum(0.0), mouthSum(0.0);
+        double mouths = 0.0;
+        for (const std::size_t m : body) {
+            const glm::dvec3 cell(cells.grid.voxelAt(m));
+            sum += cell;
+            visitFaces(cells.grid, m, [&](std::size_t next, int) {
+                if (outside[next] && !enclosed[next]) mouthSum += cell, ++mouths;
+            });
+        }
+        const double ml = double(body.size()) * cells.cellMl;
+        if (ml >= leastMl && mouths > 0.0)
+            all.push_back({placeMm(sum / double(body.size())), placeMm(mouthSum / mouths), ml,
+                           mouths * cellMm.x * cellMm.y});
+    }
+    return all;
+}
+
 /// Air at the field's sides, x and y.
 struct SideAir {
     std::vector<std::size_t> room;    ///< cells of the room's air
@@ -358,6 +402,7 @@ BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition posit
     const std::vector<std::uint8_t> lung =
         lungCells(cells, outside, tissue.meanHu[int(Tissue::air)]);
     BowelContents contents;
+    contents.enclosedRoomAir = enclosedRoomAir(cells, grid, atSides.room, outside);
     contents.content = Volume<std::uint8_t>(grid);
     const auto voxels = contents.content.writable();
     forVoxels(grid, threads, [&](std::size_t n, glm::ivec3 v) {

@@ -23,8 +23,17 @@ enum class Content : std::uint8_t {
     beyond,    ///< padding around a round field of view (field_of_view.h)
 };
 
+/// Air of the room that tissue encloses in every slice that it lies in, and that the rest of it
+/// reaches from others, 100 ml and more: of bowel that a stoma opens, or of a hollow table.
+struct EnclosedRoomAir {
+    glm::dvec3 placeMm{0.0};  ///< its middle
+    glm::dvec3 mouthMm{0.0};  ///< where the rest of the room's air begins
+    double ml = 0.0, mouthMm2 = 0.0;
+};
+
 struct BowelContents {
     Volume<std::uint8_t> content;  ///< Content
+    std::vector<EnclosedRoomAir> enclosedRoomAir;
     std::vector<Level> levels;
     GravityAxis down;
     glm::dvec3 gravity{0.0};  ///< unit, LPS: as the levels show it

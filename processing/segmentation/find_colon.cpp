@@ -21,6 +21,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace haustra::segmentation {
 namespace {
@@ -266,12 +267,32 @@ struct Course {
 
 // What may be why nothing was found.
 std::string alsoTold(const BowelContents& contents) {
-    std::string told =
-        "; gas that is open to the room, as through a stoma, counts as the room's: set up a wall "
-        "where it opens (--cut X,Y,Z,R)";
+    std::string told;
     for (const std::string& warning : contents.warnings)
         told += "; " + warning;
     return told;
+}
+
+// Of the room's air what the trunk encloses but for a mouth no wider than bowel, a table's apart.
+std::optional<std::string> openBowelIn(const BowelContents& contents,
+                                       std::span<const glm::vec3> softTissueMm) {
+    constexpr double mostMouthMm2 = 2000.0, mostAside = 0.9;
+    const BodyFrame frame = findBodyFrame(softTissueMm, -1e9, 1e9);
+    double sumMl = 0.0;
+    std::string places;
+    for (const EnclosedRoomAir& air : contents.enclosedRoomAir) {
+        const glm::dvec3 at = glm::abs(frame.place(air.placeMm));
+        if (air.mouthMm2 > mostMouthMm2 || at.x > mostAside || at.y > mostAside) continue;
+        sumMl += air.ml;
+        places += (places.empty() ? "" : ", ") + placeText(air.mouthMm);
+    }
+    if (places.empty()) return std::nullopt;
+    return printed(
+               "%.0f ml of air in the body are open to the room's, as through a stoma, and "
+               "were taken for it: if they are bowel's, set up a wall where it opens (--cut "
+               "X,Y,Z,R), near ",
+               sumMl) +
+           places;
 }
 
 /// The contents of a scan, with what a reader must know of it: slices that do not follow each
@@ -394,6 +415,8 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
                    tissue, options.threads);
     takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
+    if (auto open = openBowelIn(among.contents, among.softTissueMm))
+        among.contents.warnings.push_back(*std::move(open));
     const VoxelBox box = bowelBox(among.contents.content, placesOf(options.edits), options.threads);
     among.source.scanGrid = among.hu.grid();
     among.hu = cropped(among.hu, box, options.threads);

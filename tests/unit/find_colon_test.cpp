@@ -996,6 +996,7 @@ TEST(FindColon, ACutPartsAnOpenStomaFromTheRoom) {
                               glm::distance(p, ball.centreMm) > ball.radiusMm);
     };
     EXPECT_GT(diceWithDrawing(*cut, inside), 0.98);
+    EXPECT_FALSE(tells(*cut, "as through a stoma"));
     EXPECT_EQ(labelledMl(*cut, [&](glm::dvec3 p) { return p.x > ball.centreMm.x; }), 0.0);
 }
 
