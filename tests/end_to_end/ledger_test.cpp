@@ -609,8 +609,9 @@ TEST_F(LedgerWords, WhatALeftCaseWasToldIsWaitedFor) {
         const auto take = [&](const protocol::ServerMessage& answer) {
             isOpen |= answer.has_case_opened();
             hasFailed |= answer.has_error();
-            if (answer.has_error())
+            if (answer.has_error()) {
                 EXPECT_EQ(answer.error().code(), protocol::ErrorReport::INTERNAL);
+            }
             return isOpen && hasFailed;
         };
         ASSERT_TRUE(first);

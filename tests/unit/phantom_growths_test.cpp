@@ -251,7 +251,9 @@ TEST(PhantomGrowths, PolypsAreAsDenseAsTheyAreTold) {
     int looked = 0;
     double least = 1e9, most = -1e9;
     for (const phantom::GrowthTruth& growth : made.growths) {
-        if (!growth.neoplastic) EXPECT_EQ(growth.densityHu, 0.0);
+        if (!growth.neoplastic) {
+            EXPECT_EQ(growth.densityHu, 0.0);
+        }
         // The blur reaches the middle of smaller ones.
         if (!growth.neoplastic || std::min(growth.diameterMm, growth.heightMm) < 9.0) continue;
         const glm::ivec3 v(glm::round(grid.voxelFromPatientPoint(growth.positionMm)));
