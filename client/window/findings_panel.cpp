@@ -79,7 +79,7 @@ QString nameOfKind(const std::string& kind) {
 
 QString shapeOf(const Finding& finding) {
     const QString mm = decimal(finding.heightMm);
-    return finding.kind == "annular"
+    return finding.kind == annularKind
                ? FindingsPanel::tr("all around, %1 mm thick").arg(mm)
                : FindingsPanel::tr("%1, %2 mm high").arg(nameOfKind(finding.kind), mm);
 }

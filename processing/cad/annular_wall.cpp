@@ -14,8 +14,8 @@
 namespace haustra::cad {
 namespace {
 
-constexpr double thickMm = 6.0, leastLengthMm = 12.0, analCanalMm = 40.0;
-constexpr double sectionMm = 4.0;
+constexpr double thickMm = 6.0, sectionMm = 4.0, analCanalMm = 40.0;
+constexpr std::size_t leastSections = 3, firstSection = std::size_t(analCanalMm / sectionMm);
 constexpr std::size_t sectors = 12, leastJudged = 6;
 constexpr double leastThickShare = 5.0 / 6.0;
 // One ray in so many: 0.7 mm² of wall each.
@@ -68,13 +68,13 @@ private:
 
 using Rays = std::array<std::vector<double>, sectors>;  // their thicknesses, of one section
 
-// Median of the sectors, where the wall is thick all around in a section and in those before and
-// after it.
+// Median of the sectors, where the wall is thick all around in a section, from firstSection on, and
+// in those before and after it.
 std::optional<double> thicknessAllAround(std::span<const Rays> sections, std::size_t section) {
     std::vector<double> judged;
     for (std::size_t sector = 0; sector < sectors; ++sector) {
         std::vector<double> rays;
-        for (std::size_t n = section > 0 ? section - 1 : 0;
+        for (std::size_t n = std::max(section - 1, firstSection);
              n < std::min(section + 2, sections.size()); ++n)
             rays.insert(rays.end(), sections[n][sector].begin(), sections[n][sector].end());
         if (rays.size() < leastRays) continue;
@@ -159,7 +159,7 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
     }
     std::vector<AnnularWall> walls;
     std::vector<std::vector<double>> thicknesses;
-    for (std::size_t n = std::size_t(analCanalMm / sectionMm); n < sections.size(); ++n) {
+    for (std::size_t n = firstSection; n < sections.size(); ++n) {
         const auto mm = thicknessAllAround(sections, n);
         if (!mm) continue;
         const double fromMm = double(n) * sectionMm;
@@ -171,9 +171,13 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
         walls.back().toMm = fromMm + sectionMm;
         thicknesses.back().push_back(*mm);
     }
-    for (std::size_t wall = 0; wall < walls.size(); ++wall)
-        walls[wall].thicknessMm = medianOf(thicknesses[wall]);
-    std::erase_if(walls, [](const AnnularWall& wall) { return wall.lengthMm() < leastLengthMm; });
+    std::size_t kept = 0;
+    for (std::size_t wall = 0; wall < walls.size(); ++wall) {
+        if (thicknesses[wall].size() < leastSections) continue;
+        walls[kept] = walls[wall];
+        walls[kept++].thicknessMm = medianOf(thicknesses[wall]);
+    }
+    walls.resize(kept);
     std::vector<std::size_t> wallOf(sections.size(), walls.size());  // or none
     for (std::size_t wall = 0; wall < walls.size(); ++wall)
         std::fill(wallOf.begin() + std::ptrdiff_t(walls[wall].fromMm / sectionMm),
@@ -195,7 +199,7 @@ Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const Wal
         return poseAtArc(colon.centerline, arcMm).point.positionMm;
     };
     Finding finding;
-    finding.kind = "annular";
+    finding.kind = annularKind;
     finding.arcMm = 0.5 * (wall.fromMm + wall.toMm);
     finding.segment = segmentAt(segments, finding.arcMm);
     finding.positionMm = axisAt(finding.arcMm);
@@ -207,10 +211,14 @@ Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const Wal
     finding.diameterMm = glm::distance(finding.diameterEndsMm.first, finding.diameterEndsMm.second);
     finding.heightMm = wall.thicknessMm;
     finding.score = annularScore;
-    for (double deepestMm = deepestWallMm;; deepestMm *= 0.5) {
+    // Others of a list have room besides, on their way to a reader.
+    constexpr std::size_t mostRuns = maxFindingRuns / 2;
+    for (double deepestMm = deepestWallMm; deepestMm > 0.5; deepestMm *= 0.5) {
         finding.voxels = tissueOf(wall, colon, evidence, deepestMm);
-        if (finding.voxels.size() <= std::size_t(maxFindingRuns)) return finding;
+        if (finding.voxels.size() <= mostRuns) return finding;
     }
+    finding.voxels.clear();
+    return finding;
 }
 
 }  // namespace haustra::cad

@@ -11,8 +11,8 @@
 
 namespace haustra::cad {
 
-/// What such a finding's score is. A rule tells it, which has not learnt: all that it has told were
-/// planted or made so, none of a patient (METHODS §24.6).
+/// What such a finding's score is, unless a model's operating point is higher. A rule tells it,
+/// which has not learnt; how often it was right is known of planted ones alone (METHODS §24.6).
 inline constexpr double annularScore = 0.9;
 
 /// A stretch of the colon whose wall is thick all around.
@@ -32,9 +32,10 @@ std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_
 /// 3 mm, a collapsed one's 5 (Macari and Balthazar, AJR 2001; 176: 1105). The colon is looked at in
 /// twelfths around over 12 mm along, each by its median; all around is five sixths of those in
 /// which fat or gas ends the wall, which must be half of them: what touches other organs on more is
-/// not judged. A stretch of 12 mm at least is told, as a fold that goes all around is thinner. The
-/// anal canal, thick by its sphincters, is left out. None without a flat map. The same for any
-/// number of threads. O(samples).
+/// not judged. Where it holds three times at least, 4 mm from one to the next, a stretch is told,
+/// as a fold that goes all around is thinner; one time in between may be passed over. The last 40
+/// mm, the anal canal's, thick by its sphincters, are left out. None without a flat map. The same
+/// for any number of threads. O(samples).
 std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
                                       int threads);
 
@@ -42,8 +43,9 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
 /// thicken the wall 87 % are shorter than 50 mm (Lee et al., Korean J Gastroenterol 2012; 60: 300).
 inline constexpr double longestTumourMm = 100.0;
 
-/// As a finding of kind "annular": its diameter is its length along the wall, its height the wall's
-/// thickness, its centre the channel's; it has no features. Of one with samples.
+/// As a finding of annularKind, without features. Its voxels are its tissue, of which the outermost
+/// is left out where it has more runs than a list of findings has room for, and all where even the
+/// wall's surface has. Of one with samples.
 Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const WallEvidence& evidence,
                   const std::vector<SegmentStart>& segments);
 

@@ -201,7 +201,8 @@ std::vector<double> residueLikePolyps(const std::vector<Candidate>& residue,
     for (const WitnessedPlace& place : placesOf(witnesses)) {
         const PlaceWitness& best = witnesses[place.best];
         const bool found = std::ranges::any_of(findings, [&](const Finding& finding) {
-            return isSamePlace(finding.positionMm, finding.diameterMm, best.centreMm,
+            return finding.kind != annularKind &&
+                   isSamePlace(finding.positionMm, finding.diameterMm, best.centreMm,
                                best.diameterMm);
         });
         if (best.probability >= model.operatingPoint && !found)
@@ -232,16 +233,19 @@ void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
 
 // Those that may be a tumour are added to the findings, longer ones told by a warning alone.
 void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, int threads,
-                      std::vector<Finding>& made, std::vector<std::string>& warnings) {
+                      Findings& findings, std::vector<Finding>& made) {
     const auto segments = segmentsAlong(colon.centerline, colon.pieces);
     for (const AnnularWall& wall : annularWalls(colon, evidence, threads)) {
         const bool tumour = wall.lengthMm() <= longestTumourMm;
-        warnings.push_back(printed(
+        findings.warnings.push_back(printed(
             "the wall is %.0f mm thick all around from %.0f to %.0f mm: %s", wall.thicknessMm,
             wall.fromMm, wall.toMm,
             tumour ? "it may be a cancer that leaves a channel, or a segment that is contracted"
                    : "it may be a segment that is inflamed or contracted, or a long tumour"));
-        if (tumour) made.push_back(findingOf(wall, colon, evidence, segments));
+        if (!tumour) continue;
+        made.push_back(findingOf(wall, colon, evidence, segments));
+        // Whatever point a model operates at: it has not weighed this.
+        made.back().score = std::max(annularScore, findings.operatingPoint);
     }
 }
 
@@ -371,7 +375,7 @@ Findings findingsOf(const PreparedColon& colon, const WallEvidence& evidence,
                     "by residue of weak tagging",
                     statistics.noiseHu));
     std::vector<Finding> made;
-    tellAnnularWalls(colon, evidence, threads, made, findings.warnings);
+    tellAnnularWalls(colon, evidence, threads, findings, made);
     std::vector<const Candidate*> told;
     for (const Candidate& candidate : candidates)
         if (candidate.probability >= std::min(leastProbability, model.operatingPoint))

@@ -21,6 +21,8 @@ double acrossMm(const Finding& a, const Finding& b) {
 std::vector<MassOfFindings> massesOf(std::span<const Finding> findings) {
     std::vector<MassOfFindings> masses;
     std::vector<bool> taken(findings.size(), false);
+    for (std::size_t n = 0; n < findings.size(); ++n)
+        taken[n] = findings[n].kind == annularKind;
     for (std::size_t first = 0; first < findings.size(); ++first) {
         if (taken[first]) continue;
         taken[first] = true;

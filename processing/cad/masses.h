@@ -17,7 +17,8 @@ struct MassOfFindings {
 
 /// Of at least three findings, each within 3 mm of the rim of another, that are together at least
 /// 20 mm wide; in the order of their first. C-RADS calls what is from 30 mm on a mass (Zalis et
-/// al., Radiology 2005; 236: 3), but lobes at its rim are told too narrow, or not.
+/// al., Radiology 2005; 236: 3), but lobes at its rim are told too narrow, or not. What goes all
+/// around is no lobe.
 std::vector<MassOfFindings> massesOf(std::span<const Finding> findings);
 
 }  // namespace haustra::cad

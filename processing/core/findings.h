@@ -23,11 +23,16 @@ struct VoxelRun {
     bool operator==(const VoxelRun&) const = default;
 };
 
+/// The kind of a finding that is a stretch of wall, thick all around. Its centre is the lumen's,
+/// its diameter the straight way between its ends, its height the wall's thickness, its arc the
+/// stretch's middle, and its score fixed, as a rule tells it.
+inline constexpr char annularKind[] = "annular";
+
 struct Finding {
     glm::dvec3 positionMm{0.0};  ///< centre; of what stands on a stalk, of its head. LPS
     double diameterMm = 0.0;     ///< largest; a stalk does not count
     double score = 1.0;          ///< probability that it is a polyp, 0…1; 1 for truth
-    std::string kind;            ///< "sessile", "pedunculated", "flat", "annular"; may be empty
+    std::string kind;            ///< "sessile", "pedunculated", "flat", annularKind; may be empty
 
     // What detection adds. Of a truth these are empty.
     glm::dvec3 wallMm{0.0};  ///< the place of the wall's surface that shows it best: its top

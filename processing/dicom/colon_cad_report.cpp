@@ -71,6 +71,10 @@ double micrometres(double mm) {
     return std::round(mm * 1e3) / 1e3;
 }
 
+bool isAnnular(const Finding& finding) {
+    return finding.kind == annularKind;
+}
+
 /// What DICOM's VR LO holds: 64 characters, none of which parts values.
 std::string shortText(std::string text) {
     for (char& c : text) {
@@ -260,7 +264,13 @@ private:
         out_.code(Type::RT_inferredFrom, CODE_DCM_CompositeFeature, polypOfColon, [&] {
             out_.code(Type::RT_hasConceptMod, CODE_DCM_RenderingIntent, intent);
             out_.string(Type::RT_hasObsContext, Type::VT_Text, CODE_DCM_TrackingIdentifier, name);
-            algorithm(Type::RT_hasObsContext, {});
+            // No code that we know for sure names what it may be; this says how it was found.
+            algorithm(Type::RT_hasObsContext,
+                      isAnnular(finding)
+                          ? std::vector<std::string>{"a rule that has not learnt: the wall is " +
+                                                     decimal(std::round(finding.heightMm)) +
+                                                     " mm thick all around"}
+                          : std::vector<std::string>());
             // TID 4126.
             out_.code(properties, CODE_DCM_CompositeType,
                       CODE_DCM_TargetContentItemsAreRelatedSpatially);
@@ -292,7 +302,7 @@ private:
         if (finding.segment) out_.code(properties, findingSite, siteOf(*finding.segment));
         if (detected) {
             length(properties, CODE_DCM_DistanceFromAnus, finding.arcMm);
-            length(properties, CODE_DCM_Height, finding.heightMm);
+            if (!isAnnular(finding)) length(properties, CODE_DCM_Height, finding.heightMm);
         }
         const auto& ends = finding.diameterEndsMm;
         const bool haveEnds = detected && ends.first != ends.second;

@@ -63,7 +63,8 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
         if (!flatMapKey)
             findings.warnings.push_back(
                 "the colon was not flattened: the wall's texture was measured along other "
-                "directions than detection has learnt from");
+                "directions than detection has learnt from, and wall that is thick all around was "
+                "not looked for");
         if (auto uneven = unevenStepsOf(inputs.ct, options.threads))
             findings.warnings.insert(findings.warnings.begin(), *std::move(uneven));
         if (auto coarse = coarsenessOf(inputs.ct.grid(), series ? &*series : nullptr))

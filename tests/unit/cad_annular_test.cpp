@@ -24,6 +24,7 @@ struct TubeShape {
     double outerMm = 17.5;                ///< where its tissue ends there; elsewhere at 17.5
     double share = 1.0;                   ///< of the circumference that is narrowed
     double aroundHu = -100.0;             ///< outside
+    double organShare = 0.0;              ///< of the circumference, against which an organ lies
 };
 
 struct RingTube {
@@ -57,7 +58,8 @@ struct RingTube {
                          inside = lumenMm(p.z, angle) - r,
                          outer = glm::mix(17.5, shape.outerMm, narrowness(p.z, angle)) - r;
             const auto step = [](double mm) { return 0.5 + 0.5 * std::tanh(mm / 0.6); };
-            const double wall = glm::mix(shape.aroundHu, 40.0, step(outer));
+            const bool isOrgan = std::abs(angle) < shape.organShare * std::numbers::pi;
+            const double wall = glm::mix(isOrgan ? 40.0 : shape.aroundHu, 40.0, step(outer));
             hu.writable()[n] = std::int16_t(std::lround(glm::mix(wall, -990.0, step(inside))));
             lumen.writable()[n] =
                 std::uint8_t(inside > 0.0 ? LumenLabel::air : LumenLabel::outside);
@@ -118,6 +120,18 @@ TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
     EXPECT_TRUE(told({.fromMm = 6.0, .toMm = 38.0}).empty()) << "the anal canal";
 }
 
+TEST(AnnularWall, MayLieAgainstAnOrganOnUpToHalfOfItsCircumference) {
+    EXPECT_EQ(told({.organShare = 0.35}).size(), 1u);
+    EXPECT_TRUE(told({.organShare = 0.7}).empty());
+}
+
+TEST(AnnularWall, IsNotLookedForWithoutAFlatMap) {
+    RingTube tube({});
+    tube.flat = {};
+    const auto colon = tube.colon();
+    EXPECT_TRUE(cad::annularWalls(colon, cad::gatherEvidence(colon, {}), 0).empty());
+}
+
 TEST(AnnularWall, ASampleIsAsThickAsItsTissue) {
     const RingTube tube({});
     const auto colon = tube.colon();
@@ -150,7 +164,7 @@ TEST(AnnularWall, AsAFindingItIsItsTissue) {
     const auto walls = cad::annularWalls(colon, evidence, 0);
     ASSERT_EQ(walls.size(), 1u);
     const Finding finding = cad::findingOf(walls[0], colon, evidence, {});
-    EXPECT_EQ(finding.kind, "annular");
+    EXPECT_EQ(finding.kind, annularKind);
     EXPECT_NEAR(finding.diameterMm, 30.0, 6.0);
     EXPECT_NEAR(finding.heightMm, 10.5, 1.0);
     EXPECT_LT(glm::distance(finding.positionMm, glm::dvec3(0, 0, 115.0)), 4.0);
@@ -184,17 +198,21 @@ TEST(AnnularWall, IsTheSameForAnyNumberOfThreads) {
 }
 
 // What is told of a colon without candidates.
-Findings findingsOf(const TubeShape& shape) {
+Findings findingsOf(const TubeShape& shape, double operatingPoint = 0.0) {
     const RingTube tube(shape);
     const auto colon = tube.colon();
-    return cad::findingsOf(colon, cad::gatherEvidence(colon, {}), {}, cad::CadModel{});
+    cad::CadModel model;
+    model.operatingPoint = operatingPoint;
+    return cad::findingsOf(colon, cad::gatherEvidence(colon, {}), {}, model);
 }
 
 TEST(AnnularWall, AShortOneIsAFindingAndALongOneAWarning) {
     const Findings tumour = findingsOf({});
     ASSERT_EQ(tumour.findings.size(), 1u);
-    EXPECT_EQ(tumour.findings[0].kind, "annular");
+    EXPECT_EQ(tumour.findings[0].kind, annularKind);
     EXPECT_NEAR(tumour.findings[0].arcMm, 115.0, 3.0);
+
+    EXPECT_EQ(findingsOf({}, 0.97).findings.size(), 1u) << "whatever point a model operates at";
 
     const Findings segment = findingsOf({.fromMm = 80.0, .toMm = 220.0});
     EXPECT_TRUE(segment.findings.empty());

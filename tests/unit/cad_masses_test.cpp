@@ -36,6 +36,15 @@ TEST(Masses, LobesSideBySideAreOneAsWideAsAllOfThem) {
     EXPECT_NEAR(masses[0].widthMm, 24.0 + 11.0, 1e-9);
 }
 
+TEST(Masses, WhatGoesAllAroundIsNoLobe) {
+    // Its centre is the lumen's, and its diameter its length, so that it would reach both others.
+    auto findings = ring(2, 20.0, 10.0);
+    findings.push_back(findingAt({40.0, 0.0, -7.0}, 60.0));
+    EXPECT_EQ(cad::massesOf(findings).size(), 1u);
+    findings.back().kind = annularKind;
+    EXPECT_TRUE(cad::massesOf(findings).empty());
+}
+
 TEST(Masses, AGapWiderThanAllowedParts) {
     // Rims are 12 − diameter apart: 2.9 mm, then 3.1.
     EXPECT_EQ(cad::massesOf(ring(6, 12.0, 9.1)).size(), 1u);

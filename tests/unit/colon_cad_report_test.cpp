@@ -273,6 +273,21 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
     expectSound();
 }
 
+TEST_F(ColonCadReport, OfWallThatIsThickAllAroundSaysThatARuleFoundIt) {
+    Findings findings = someFindings();
+    findings.findings[0].kind = annularKind;
+    findings.findings[0].heightMm = 11.0;
+    const auto items = written(findings);
+    const auto feature = below(items, "Composite Feature", 0),
+               other = below(items, "Composite Feature", 1);
+    ASSERT_TRUE(named(feature, "Algorithm Parameters"));
+    EXPECT_EQ(named(feature, "Algorithm Parameters")->value,
+              "a rule that has not learnt: the wall is 11 mm thick all around");
+    EXPECT_FALSE(named(feature, "Height")) << "nothing stands up there";
+    EXPECT_FALSE(named(other, "Algorithm Parameters"));
+    expectSound();
+}
+
 TEST_F(ColonCadReport, SaysWhatWasLookedAtAndHow) {
     const auto items = written(someFindings());
     EXPECT_EQ(items[0].name, "Colon CAD Report");
