@@ -12,8 +12,9 @@
 namespace haustra {
 namespace {
 
-tl::unexpected<Error> systemError(const std::string& doing, const std::filesystem::path& place) {
-    return fail(ErrorKind::io, "cannot " + doing + ": " + std::strerror(errno), place.string());
+tl::unexpected<Error> systemError(const std::string& doing, const std::filesystem::path& place,
+                                  int error = errno) {
+    return fail(ErrorKind::io, "cannot " + doing + ": " + std::strerror(error), place.string());
 }
 
 bool writeAll(int descriptor, std::string_view bytes) {
@@ -40,6 +41,7 @@ DurableFile::DurableFile(std::filesystem::path file, unsigned permissions)
         descriptor_ = ::open(beside_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
     } while (descriptor_ < 0 && errno == EEXIST);
     isThere_ = descriptor_ >= 0;
+    if (!isThere_) error_ = errno;
 }
 
 DurableFile::~DurableFile() {
@@ -49,8 +51,13 @@ DurableFile::~DurableFile() {
     errno = error;
 }
 
+Result<void> DurableFile::isMade() const {
+    if (error_ != 0) return systemError("create", file_, error_);
+    return {};
+}
+
 Result<void> DurableFile::publish() {
-    if (descriptor_ < 0) return systemError("create", file_);
+    TRY(isMade());
     const bool synced = ::fsync(descriptor_) == 0;
     if (::close(std::exchange(descriptor_, -1)) != 0 || !synced) return systemError("write", file_);
     if (::rename(beside_.c_str(), file_.c_str()) != 0) return systemError("publish", file_);
@@ -67,7 +74,7 @@ Result<void> writeDurably(const std::filesystem::path& file, std::string_view te
 Result<void> writeDurably(const std::filesystem::path& file,
                           const std::function<bool(int descriptor)>& write, unsigned permissions) {
     DurableFile made(file, permissions);
-    if (made.descriptor() < 0) return systemError("create", file);
+    TRY(made.isMade());
     if (!write(made.descriptor())) return systemError("write", file);
     return made.publish();
 }
@@ -75,6 +82,9 @@ Result<void> writeDurably(const std::filesystem::path& file,
 Result<void> syncFolder(const std::filesystem::path& folder) {
     const std::filesystem::path named = folder.empty() ? "." : folder;
     const int descriptor = ::open(named.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // Into a folder that may be written and not read, files are dropped for others: each is whole,
+    // and its name cannot be waited for. A store's folders are listed, hence read.
+    if (descriptor < 0 && errno == EACCES) return {};
     if (descriptor < 0) return systemError("open", named);
     // Some network file systems know no fsync of a folder.
     const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;

@@ -3,12 +3,9 @@
 
 #include "core/result.h"
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <span>
 #include <string_view>
-#include <vector>
 
 namespace haustra {
 
@@ -25,19 +22,21 @@ public:
     DurableFile(const DurableFile&) = delete;
     DurableFile& operator=(const DurableFile&) = delete;
 
-    /// To be read and written; −1 where it could not be made, and errno says why.
+    /// Fails (io) where it could not be made.
+    Result<void> isMade() const;
+    /// To be read and written; −1 where it is not made.
     int descriptor() const { return descriptor_; }
     /// Its name until then, for who cannot write to a descriptor.
     const std::filesystem::path& beside() const { return beside_; }
 
     /// Puts it in place of `file`, in one step: at no moment is a part of it visible there. When
-    /// this returns without an error it survives a power cut. Fails (io); the old file stands then,
-    /// or the new one, whole.
+    /// this returns without an error it survives a power cut, where its folder may be read. Fails
+    /// (io); the old file stands then, or the new one, whole.
     Result<void> publish();
 
 private:
     std::filesystem::path file_, beside_;
-    int descriptor_ = -1;
+    int descriptor_ = -1, error_ = 0;
     bool isThere_;  // under the temporary name
 };
 
@@ -50,7 +49,8 @@ Result<void> writeDurably(const std::filesystem::path& file,
                           const std::function<bool(int descriptor)>& write,
                           unsigned permissions = 0666);
 
-/// fsyncs a folder, so that the names in it survive a power cut.
+/// fsyncs a folder, so that the names in it survive a power cut. One that may not be read is passed
+/// over.
 Result<void> syncFolder(const std::filesystem::path& folder);
 
 }  // namespace haustra

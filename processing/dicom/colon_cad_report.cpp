@@ -513,6 +513,7 @@ Result<void> nameDocument(DcmDataset& dataset, const Findings& findings,
 
 Result<void> save(DcmFileFormat& format, const std::filesystem::path& file) {
     DurableFile made(file);
+    TRY(made.isMade());
     const OFCondition saved =
         format.saveFile(OFFilename(made.beside().c_str()), EXS_LittleEndianExplicit,
                         EET_ExplicitLength, EGL_recalcGL, EPD_withoutPadding);

@@ -85,6 +85,7 @@ Result<void> writeImage(const std::filesystem::path& file, const nifti_1_header&
     std::array<std::byte, dataOffset> head{};
     std::memcpy(head.data(), &header, sizeof header);
     DurableFile made(file);
+    TRY(made.isMade());
     std::ofstream out(made.beside(), std::ios::binary);
     if (file.extension() == ".gz")
         writeGzip(out, head, body, 0);

@@ -129,8 +129,7 @@ public:
         : file_(std::move(file)), spec_(std::move(spec)), made_(file_), bytes_(made_) {}
 
     Result<void> open() {
-        if (made_.descriptor() < 0)
-            return fail(ErrorKind::io, "cannot be opened for writing", file_.string());
+        TRY(made_.isMade());
         output_ = OIIO::ImageOutput::create(formatOf(file_), &bytes_);
         if (!output_ || !output_->open(file_.string(), spec_)) return notWhole();
         return {};

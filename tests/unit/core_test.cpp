@@ -282,6 +282,22 @@ TEST(DurableFile, IsThereWholeOrAsItWas) {
     ASSERT_FALSE(nowhere);
     EXPECT_EQ(nowhere.error().kind, ErrorKind::io);
     EXPECT_EQ(nowhere.error().place, (folder.path() / "none" / "file").string());
+    const DurableFile unmade(folder.path() / "none" / "file");
+    errno = 0;  // whatever happens in between
+    const auto isMade = unmade.isMade();
+    ASSERT_FALSE(isMade);
+    EXPECT_EQ(isMade.error().message, "cannot create: No such file or directory");
+    EXPECT_EQ(describe(isMade.error()), describe(nowhere.error()));
+
+    // Where files can be dropped, and the folder not read (by whoever is not root).
+    const std::filesystem::path drop = folder.path() / "drop";
+    using std::filesystem::perms;
+    std::filesystem::create_directory(drop);
+    std::filesystem::permissions(drop, perms::owner_write | perms::owner_exec);
+    EXPECT_TRUE(writeDurably(drop / "file", "text"));
+    std::filesystem::permissions(drop, perms::owner_all);
+    EXPECT_EQ(readTextFile(drop / "file"), "text");
+    std::filesystem::remove_all(drop);
 
     {
         std::vector<std::jthread> writers;

@@ -111,6 +111,7 @@ TEST_F(Nifti, UnwritablePlaceIsAnError) {
         writeNifti(folder / "no/such/folder.nii", pattern<float>(obliqueGrid({2, 2, 2})));
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().kind, ErrorKind::io);
+    EXPECT_EQ(written.error().message, "cannot create: No such file or directory");
 }
 
 }  // namespace

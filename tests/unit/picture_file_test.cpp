@@ -101,7 +101,7 @@ TEST_F(PictureFiles, APictureThatIsNotWholeLeavesNothing) {
         EXPECT_TRUE(fs::is_empty(folder_)) << ending;
         EXPECT_FALSE(createPicture(at("none" + ending), 0, 10, provenance));
         refused(createPicture(at("missing/a" + ending), 2, 2, provenance), at("missing/a" + ending),
-                "");
+                "No such file or directory");
         EXPECT_FALSE(writePicture(at("wrong" + ending), {4, 4, {1, 2, 3}}, provenance));
     }
     refused(createPicture(at("a.gif"), 2, 2, provenance), at("a.gif"), ".png");
