@@ -191,6 +191,10 @@ std::string presetText(const OpticsPreset& preset) {
 Result<OpticsPreset> readPresetFile(const std::filesystem::path& file) {
     constexpr std::size_t longestFile = 1 << 20;
     const std::string place = file.filename().string();
+    // A pipe would be waited for, without end where nobody writes to it.
+    std::error_code ignored;
+    if (std::filesystem::is_other(file, ignored))
+        return fail(ErrorKind::io, "this is a pipe or a device, not a file to read", place);
     auto text = readTextFile(file, longestFile);
     if (!text) text.error().place = place;  // not where the presets of a server lie
     return parsePreset(TRY(std::move(text)), place);

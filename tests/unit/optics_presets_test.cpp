@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace haustra::render {
 namespace {
@@ -152,6 +153,16 @@ TEST_F(PresetFolder, FilesAreWrittenWholeAndReadBack) {
     const auto tooLong = readPresetFile(folder / "b.json");
     ASSERT_FALSE(tooLong);
     EXPECT_EQ(tooLong.error().kind, ErrorKind::badInput);
+}
+
+TEST_F(PresetFolder, APipeInItIsNotWaitedFor) {
+    ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
+    write("sound.json", sound);
+    const auto library = readPresets(folder);
+    ASSERT_TRUE(library);
+    ASSERT_EQ(library->refused.size(), 1u);
+    EXPECT_EQ(library->refused[0].place, "pipe.json");
+    EXPECT_EQ(library->presets.size(), builtInPresets().size() + 1);
 }
 
 TEST_F(PresetFolder, ThatIsNotThereIsAFailure) {
