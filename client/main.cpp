@@ -1,4 +1,5 @@
 // haustra-client: reads a case that a Haustra server streams, in a window or from a script.
+#include "core/durable_file.h"
 #include "core/version.h"
 #include "link/fingerprint.h"
 #include "link/known_servers.h"
@@ -200,13 +201,10 @@ int playScript(const Arguments& a, link::ConnectionOptions connection,
     reader::Session session(connection, a.caseName);
     const reader::PlayReport report = reader::play(session, *actions, options);
     tellFirstUse(session, connection);
-    const auto reportFile = options.outFolder / "latencies.json";
-    std::ofstream out(reportFile);
-    out << reader::toJson(report);
-    if (report.failure) return failed(*report.failure);
-    if (!out.flush())
-        return failed({ErrorKind::io, "cannot write the report", reportFile.string()});
-    return exitDone;
+    const auto written = writeDurably(options.outFolder / "latencies.json", reader::toJson(report));
+    if (report.failure) failed(*report.failure);
+    if (!written) failed(written.error());
+    return report.failure || !written ? exitFailed : exitDone;
 }
 
 }  // namespace

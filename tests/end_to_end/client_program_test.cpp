@@ -119,6 +119,15 @@ TEST_F(ClientProgram, FailuresAreOneLineAndExitWithOne) {
         EXPECT_NE(outcome.text.find(one.says), std::string::npos) << outcome.text;
         EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
     }
+    // A report that cannot be written is told, too, whether or not the script was played.
+    std::filesystem::remove_all(folder_ / "out");
+    std::filesystem::create_directories(folder_ / "out" / "latencies.json");
+    for (const std::string name : {"phantom", "nobody"}) {
+        const Outcome outcome = run(at(server) + " --case " + name + playing(good));
+        EXPECT_EQ(outcome.exitCode, 1) << outcome.text;
+        EXPECT_NE(outcome.text.find("latencies.json: cannot"), std::string::npos) << outcome.text;
+        EXPECT_EQ(outcome.text.find("no such case") != std::string::npos, name == "nobody");
+    }
 }
 
 // The whole window, drawn by software: its picture must show the four views.
