@@ -21,7 +21,7 @@ constexpr double maxBinHu = 1e6;
 // Of the scan, along each axis.
 constexpr double minSpacingMm = 1e-3, maxSpacingMm = 1e3;
 constexpr int maxPresets = 64;
-constexpr std::size_t maxNameBytes = 64, maxDescriptionBytes = 1000, maxTimeBytes = 40;
+constexpr std::size_t maxScanBytes = 64, maxDescriptionBytes = 1000, maxTimeBytes = 40;
 
 // Written so that what is not a number is outside, too.
 bool isWithin(double value, double low, double high) {
@@ -166,7 +166,7 @@ Result<CaseInfo> caseInfoFrom(const protocol::CaseOpened& message) {
     info.scan = message.scan();
     if (!isCaseName(info.name))
         return fail(ErrorKind::badInput, "its name is none", "case opened: name");
-    if (!isVisibleAscii(info.scan, maxNameBytes))
+    if (!isVisibleAscii(info.scan, maxScanBytes))
         return fail(ErrorKind::badInput, "its scan has no name", "case opened: scan");
     for (const std::uint32_t extent : {message.size_x(), message.size_y(), message.size_z()})
         if (extent > 4096)
