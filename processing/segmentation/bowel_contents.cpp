@@ -2,7 +2,6 @@
 
 #include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
-#include "segmentation/field_of_view.h"
 
 #include <algorithm>
 #include <array>
@@ -391,10 +390,9 @@ void measureGas(const Volume<std::int16_t>& hu, BowelContents& contents, int thr
 
 }  // namespace
 
-BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,
-                           const TissueModel& tissue, int threads) {
+BowelContents findContents(const Volume<std::int16_t>& hu, const FieldOfView& field,
+                           PatientPosition position, const TissueModel& tissue, int threads) {
     const Grid& grid = hu.grid();
-    const FieldOfView field = fieldOfView(hu, threads);
     const Cells cells = makeCells(hu, field, tissue.airBelowHu, threads);
     const SideAir atSides = sideAir(cells, field.round);
     const std::vector<std::uint8_t> outside =

@@ -4,6 +4,7 @@
 #include "core/ct_scan.h"
 #include "core/tissue.h"
 #include "segmentation/air_fluid_levels.h"
+#include "segmentation/field_of_view.h"
 
 #include <cstdint>
 #include <string>
@@ -42,7 +43,8 @@ struct BowelContents {
     std::vector<std::string> notes;
 };
 
-/// Sorts the voxels of a scan, taken in this position, by HU and place. The room's air is what can
+/// Sorts the voxels of a scan of this field, taken in this position, by HU and place; a wall that a
+/// person set up may stand in it. The room's air is what can
 /// be reached from the scan's sides through places where a cube of 4 mm fits, and 6 mm more: so a
 /// tube in the rectum, open to the room, does not make the colon a part of it. Of a side it is what
 /// lies in a corner of the slices, or from the first to the last; of a round field's border, which
@@ -50,7 +52,7 @@ struct BowelContents {
 /// field cuts. Lung is air of a mean HU more than 60 above gas in cubes of 4 mm, where such cubes
 /// lie three deep. Levels as of findLevels, for the direction of gravity that shows most of them; a
 /// warning says where that is not the told one.
-BowelContents findContents(const Volume<std::int16_t>& hu, PatientPosition position,
-                           const TissueModel& tissue, int threads);
+BowelContents findContents(const Volume<std::int16_t>& hu, const FieldOfView& field,
+                           PatientPosition position, const TissueModel& tissue, int threads);
 
 }  // namespace haustra::segmentation

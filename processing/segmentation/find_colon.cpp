@@ -8,6 +8,7 @@
 #include "segmentation/chain_graph.h"
 #include "segmentation/colon_labels.h"
 #include "segmentation/edge_overshoot.h"
+#include "segmentation/field_of_view.h"
 #include "segmentation/haustral_folds.h"
 #include "segmentation/metal.h"
 #include "segmentation/record_colon.h"
@@ -43,8 +44,9 @@ void visitBalls(const Grid& grid, const std::vector<CutBall>& balls, const Visit
 
 void cutBalls(BowelContents& contents, const std::vector<CutBall>& balls) {
     const auto voxels = contents.content.writable();
-    visitBalls(contents.content.grid(), balls,
-               [&](std::size_t n) { voxels[n] = std::uint8_t(Content::tissue); });
+    visitBalls(contents.content.grid(), balls, [&](std::size_t n) {
+        if (Content(voxels[n]) != Content::beyond) voxels[n] = std::uint8_t(Content::tissue);
+    });
 }
 
 // The scan with walls where a person cuts, so that what a cut parts from the room's air is none.
@@ -296,10 +298,11 @@ std::optional<std::string> openBowelIn(const BowelContents& contents,
 }
 
 /// The contents of a scan, with what a reader must know of it: slices that do not follow each
-/// other, and metal. `hu` is the scan, or a binned one.
+/// other, and metal. `hu` is the scan, or a binned one; a person's cuts are walls in it.
 BowelContents contentsOf(const CtScan& scan, const Volume<std::int16_t>& hu,
-                         const TissueModel& tissue, int threads) {
-    BowelContents contents = findContents(hu, scan.position, tissue, threads);
+                         const std::vector<CutBall>& cuts, const TissueModel& tissue, int threads) {
+    BowelContents contents = findContents(walledOff(hu, cuts, tissue.meanHu[int(Tissue::soft)]),
+                                          fieldOfView(hu, threads), scan.position, tissue, threads);
     if (auto uneven = unevenStepsOf(scan.hu, threads))
         contents.warnings.push_back(*std::move(uneven));
     if (auto metal = metalIn(hu, contents.content, threads))
@@ -410,9 +413,7 @@ Result<FoundColon> findColon(const CtScan& scan, const TissueModel& tissue,
     const glm::ivec3 by = binningOf(scan.hu.grid());
     Surroundings among;
     among.hu = binned(scan.hu, by, options.threads);
-    among.contents =
-        contentsOf(scan, walledOff(among.hu, options.edits.cuts, tissue.meanHu[int(Tissue::soft)]),
-                   tissue, options.threads);
+    among.contents = contentsOf(scan, among.hu, options.edits.cuts, tissue, options.threads);
     takeOffOvershoot(among.hu, tissue, among.contents, options.threads);
     among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
     if (auto open = openBowelIn(among.contents, among.softTissueMm))
@@ -440,7 +441,7 @@ Result<FoundColon> findColonInMask(const Volume<std::uint8_t>& mask, const CtSca
     among.given = true;
     if (scan) {
         among.hu = scan->hu.share();
-        among.contents = contentsOf(*scan, among.hu, tissue, options.threads);
+        among.contents = contentsOf(*scan, among.hu, {}, tissue, options.threads);
         among.softTissueMm = softTissueSamples(among.hu, among.contents.content);
         among.source = {grid, softShare(scan->hu, mask, tissue)};
     } else {

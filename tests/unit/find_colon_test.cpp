@@ -244,6 +244,21 @@ TEST(FindColon, IsWholeWithinAWiderCircle) {
     EXPECT_TRUE(found->record.cutEnds.empty());
 }
 
+// A wall that a person sets up at the field's border is none of the border's padding.
+TEST(FindColon, ACutAcrossTheFieldsCircleChangesNothingAwayFromIt) {
+    const CutBall ball{{fieldsMiddleMm.x, 14.0, 60.0}, 15.0};
+    for (const std::int16_t padding : {-1024, 0}) {
+        const CtScan scan = withinCircle(Drawing::supine(), 110.0, padding);
+        ColonOptions options;
+        options.edits.cuts = {ball};
+        const auto without = find(scan), with = find(scan, options);
+        ASSERT_TRUE(without && with);
+        EXPECT_TRUE(std::ranges::equal(without->labels.voxels(), with->labels.voxels()));
+        EXPECT_EQ(without->record.warnings, with->record.warnings);
+        EXPECT_FALSE(with->record.cutEnds.empty());
+    }
+}
+
 TEST(FindColon, TellsWhereTheScanEndsWithinTheColon) {
     const auto whole = find(between(0, 380));
     ASSERT_TRUE(whole) << describe(whole.error());
@@ -277,12 +292,17 @@ TEST(FindColon, TellsMetal) {
     ASSERT_TRUE(without) << describe(without.error());
     EXPECT_FALSE(tells(*without, "brighter than bone"));
     Drawing drawing = Drawing::supine();
+    const CutBall hip{{60, 180, 40}, 15.0};
     drawing.paint(3071,
-                  [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(60, 180, 40)) < 15.0; });
-    const auto found = find(drawing.scan());
-    ASSERT_TRUE(found) << describe(found.error());
-    EXPECT_TRUE(tells(*found, "14.0 ml are brighter than bone"));  // of a ball's 14.1
-    EXPECT_TRUE(tells(*found, "at (60, 180, 40) mm"));
+                  [&](glm::dvec3 p) { return glm::distance(p, hip.centreMm) < hip.radiusMm; });
+    ColonOptions options;
+    for (const bool cut : {false, true}) {
+        if (cut) options.edits.cuts = {hip};
+        const auto found = find(drawing.scan(), options);
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_TRUE(tells(*found, "14.0 ml are brighter than bone"));  // of a ball's 14.1
+        EXPECT_TRUE(tells(*found, "at (60, 180, 40) mm"));
+    }
 }
 
 // The wires of a stent are thinner than voxels, and so no brighter than compact bone, which is told
