@@ -2,6 +2,7 @@
 
 #include "core/printed_text.h"
 #include "core/voxel_sweep.h"
+#include "segmentation/told_places.h"
 
 #include <algorithm>
 #include <utility>
@@ -45,7 +46,6 @@ std::vector<BrightBody> bodiesOf(const std::vector<std::uint32_t>& bright, const
 std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
                                    const Volume<std::uint8_t>& content, int threads) {
     constexpr int brighterThanBoneHu = 2500;  // compact bone has 2000 at most
-    constexpr std::size_t mostPlaces = 4;
     const auto bodies = bodiesOf(voxelsWhere(hu.grid(), threads,
                                              [&](std::size_t n, glm::ivec3) {
                                                  return hu[n] > brighterThanBoneHu &&
@@ -54,16 +54,14 @@ std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
                                  hu.grid());
     if (bodies.empty()) return std::nullopt;
     double allMl = 0.0;
-    std::string places;
-    for (std::size_t n = 0; n < bodies.size(); ++n) {
-        allMl += bodies[n].ml;
-        if (n < mostPlaces) places += (n == 0 ? "" : ", ") + placeText(bodies[n].placeMm);
-    }
+    ToldPlaces places(4);
+    for (const BrightBody& body : bodies)
+        allMl += body.ml, places.add(body.placeMm);
     return printed(
                "%.1f ml are brighter than bone, metal or thick barium: at the height of their "
                "streaks walls and fluid may be wrong or missing, at ",
                allMl) +
-           places + (bodies.size() > mostPlaces ? " and elsewhere" : "");
+           places.text();
 }
 
 std::vector<BrightBody> metalAtLumen(const Volume<std::int16_t>& hu,

@@ -2,6 +2,7 @@
 
 #include "core/printed_text.h"
 #include "segmentation/course_doubts.h"
+#include "segmentation/told_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -368,24 +369,20 @@ private:
         return body.content == BodyContent::gas && !body.isNear();
     }
 
-    static constexpr std::size_t mostPlaces = 6;  // that a line names
-
     void sayFarGas() {
         double sumMl = 0.0;
-        std::size_t bodies = 0;
-        std::string places;
+        ToldPlaces places;
         for (const LeftOutBody& body : made_.leftOut) {
             if (!isFarGas(body)) continue;
             sumMl += body.volumeMl;
-            if (++bodies <= mostPlaces)
-                places += (places.empty() ? "" : ", ") + placeText(body.centreMm);
+            places.add(body.centreMm);
         }
-        if (bodies == 0) return;
+        if (places.none()) return;
         made_.warnings.push_back(
             printed("%.0f ml of gas away from the course were taken for the stomach's, other "
                     "bowel's or free, at ",
                     sumMl) +
-            places + (bodies > mostPlaces ? " and elsewhere" : ""));
+            places.text());
     }
 
     // Bodies of one kind near one part in one line, the largest first.
@@ -395,8 +392,7 @@ private:
         for (std::size_t n = 0; n < said.size(); ++n) {
             const LeftOutBody& first = made_.leftOut[n];
             double sumMl = 0.0;
-            std::size_t bodies = 0;
-            std::string places;
+            ToldPlaces places;
             for (std::size_t m = n; m < said.size(); ++m) {
                 const LeftOutBody& body = made_.leftOut[m];
                 if (said[m] || body.content != first.content || body.nearest != first.nearest ||
@@ -405,10 +401,9 @@ private:
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
-                if (++bodies <= mostPlaces)
-                    places += (places.empty() ? "" : ", ") + placeText(body.centreMm);
+                places.add(body.centreMm);
             }
-            if (bodies == 0) continue;
+            if (places.none()) continue;
             made_.warnings.push_back(
                 printed("%.0f ml of %s nearest to the %s%s, at ", sumMl, toString(first.content),
                         toString(first.nearest),
@@ -417,23 +412,23 @@ private:
                             ? ", as wide as colon and where it may lie, were taken for "
                               "other than colon"
                             : " were taken for other than colon") +
-                places + (bodies > mostPlaces ? " and elsewhere" : ""));
+                places.text());
         }
     }
 
     void sayMetal() {
-        std::map<ColonPart, std::pair<double, std::string>> told;
+        std::map<ColonPart, std::pair<double, ToldPlaces>> told;
         for (const BrightBody& body : metal_) {
             auto& [sumMl, places] = told[partAt(body.placeMm)];
             sumMl += body.ml;
-            places += (places.empty() ? "" : ", ") + placeText(body.placeMm);
+            places.add(body.placeMm);
         }
         for (const auto& [part, what] : told)
             made_.warnings.push_back(
                 printed("%.1f ml at the wall of the %s are as bright as metal, as of a stent, or "
                         "thick barium: what lies there is not seen, at ",
                         what.first, toString(part)) +
-                what.second);
+                what.second.text());
     }
 
     // Tagged fluid that stands nowhere under gas in the whole scan may be bone beside a pool.

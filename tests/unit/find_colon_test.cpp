@@ -324,6 +324,23 @@ TEST(FindColon, TellsAStentsMeshAtTheLumenAndNoBone) {
     }
 }
 
+TEST(FindColon, NamesAFewPlacesOfMuchMetal) {
+    const Capsule& descending = colon()[3];
+    Drawing drawing = Drawing::supine();
+    drawing.paint(1700, [&](glm::dvec3 p) {
+        return std::abs(outsideMm(descending, p)) < 2.0 && p.z > 140 && p.z < 280 &&
+               std::fmod(p.z, 15.0) < 7.0;
+    });
+    const auto found = find(drawing.scan());
+    ASSERT_TRUE(found) << describe(found.error());
+    const auto line = std::ranges::find_if(found->record.warnings, [](const std::string& warning) {
+        return warning.find("are as bright as metal") != std::string::npos;
+    });
+    ASSERT_NE(line, found->record.warnings.end());
+    EXPECT_EQ(std::ranges::count(*line, '('), 6) << *line;
+    EXPECT_TRUE(line->ends_with("and elsewhere"));
+}
+
 // 300 to 900 HU are the best; little of it may not be told from tissue at all.
 TEST(FindColon, TellsHowWeakTheTaggingIs) {
     for (const double hu : {620.0, 150.0}) {
