@@ -69,17 +69,21 @@ std::vector<BrightBody> metalAtLumen(const Volume<std::int16_t>& hu,
     constexpr int blurredWireHu = 1500;
     constexpr double reachMm = 3.0;
     const Grid& grid = hu.grid();
-    const glm::ivec3 reach(reachMm / grid.spacingMm());
-    return bodiesOf(
-        voxelsWhere(grid, threads,
-                    [&](std::size_t n, glm::ivec3 v) {
-                        return hu[n] > blurredWireHu &&
-                               anyInBox(glm::max(v - reach, glm::ivec3(0)),
-                                        glm::min(v + reach, grid.size - 1), [&](glm::ivec3 w) {
-                                            return LumenLabel(labels.at(w)) != LumenLabel::outside;
-                                        });
-                    }),
-        grid);
+    // What reaches the lumen across one face is at it, however thick the slices are.
+    const glm::dvec3 voxelMm = grid.spacingMm(), farthestMm = glm::max(voxelMm, reachMm);
+    const glm::ivec3 reach(glm::ceil(farthestMm / voxelMm));
+    const auto isAtLumen = [&](glm::ivec3 v) {
+        return anyInBox(glm::max(v - reach, glm::ivec3(0)), glm::min(v + reach, grid.size - 1),
+                        [&](glm::ivec3 w) {
+                            return LumenLabel(labels.at(w)) != LumenLabel::outside &&
+                                   glm::length(glm::dvec3(w - v) * voxelMm / farthestMm) <= 1.0;
+                        });
+    };
+    return bodiesOf(voxelsWhere(grid, threads,
+                                [&](std::size_t n, glm::ivec3 v) {
+                                    return hu[n] > blurredWireHu && isAtLumen(v);
+                                }),
+                    grid);
 }
 
 }  // namespace haustra::segmentation

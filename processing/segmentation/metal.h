@@ -20,10 +20,10 @@ struct BrightBody {
     double ml = 0.0;
 };
 
-/// What is brighter than 1500 HU within 3 mm of the lumen (LumenLabel, on the same grid), 0.3 ml or
-/// more in one piece, the largest first: a stent's mesh, clips, or barium that has thickened.
-/// Blurred wires are no brighter than compact bone, but bone does not lie there. The same for any
-/// number of threads.
+/// What is brighter than 1500 HU within 3 mm of the lumen (LumenLabel, on the same grid), or one
+/// voxel along an axis where voxels are longer, 0.3 ml or more in one piece, the largest first: a
+/// stent's mesh, clips, or barium that has thickened. Blurred wires are no brighter than compact
+/// bone, but bone does not lie there. The same for any number of threads.
 std::vector<BrightBody> metalAtLumen(const Volume<std::int16_t>& hu,
                                      const Volume<std::uint8_t>& labels, int threads);
 
