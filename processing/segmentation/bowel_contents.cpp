@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -106,7 +107,7 @@ std::vector<std::uint8_t> flood(const Cells& cells, std::vector<std::size_t> fro
 }
 
 // What of the outside cells no way within a slice leads to from the room's at the field's sides, in
-// bodies of 100 ml and more; the mouth lies between slices.
+// bodies of 100 ml and more; their mouths lie between slices.
 std::vector<EnclosedRoomAir> enclosedRoomAir(const Cells& cells, const Grid& grid,
                                              const std::vector<std::size_t>& room,
                                              const std::vector<std::uint8_t>& outside) {
@@ -123,8 +124,18 @@ std::vector<EnclosedRoomAir> enclosedRoomAir(const Cells& cells, const Grid& gri
     };
     floodFill(open, inSlice, take);
     const std::vector<std::uint8_t> enclosed = left;
-    const auto placeMm = [&](glm::dvec3 cell) {
-        return grid.patientFromVoxelPoint((cell + 0.5) * glm::dvec3(cells.block) - 0.5);
+    const auto facesOut = [&](std::size_t n) {
+        int faces = 0;
+        visitFaces(cells.grid, n,
+                   [&](std::size_t next, int) { faces += outside[next] && !enclosed[next]; });
+        return faces;
+    };
+    const auto middleMm = [&](const std::vector<std::size_t>& of) {
+        glm::dvec3 sum(0.0);
+        for (const std::size_t n : of)
+            sum += glm::dvec3(cells.grid.voxelAt(n));
+        return grid.patientFromVoxelPoint(
+            (sum / double(of.size()) + 0.5) * glm::dvec3(cells.block) - 0.5);
     };
     const glm::dvec3 cellMm = grid.spacingMm() * glm::dvec3(cells.block);
     std::vector<EnclosedRoomAir> all;
@@ -132,19 +143,23 @@ std::vector<EnclosedRoomAir> enclosedRoomAir(const Cells& cells, const Grid& gri
         if (!take(n)) continue;
         std::vector<std::size_t> body{n};
         floodFill(body, faceNeighbours(cells.grid), take);
-        glm::dvec3 sum(0.0), mouthSum(0.0);
-        double mouths = 0.0;
+        EnclosedRoomAir air{middleMm(body), double(body.size()) * cells.cellMl, {}};
+        if (air.ml < leastMl) continue;
+        std::set<std::size_t> atMouth;
         for (const std::size_t m : body) {
-            const glm::dvec3 cell(cells.grid.voxelAt(m));
-            sum += cell;
-            visitFaces(cells.grid, m, [&](std::size_t next, int) {
-                if (outside[next] && !enclosed[next]) mouthSum += cell, ++mouths;
-            });
+            if (facesOut(m) > 0) atMouth.insert(m);
         }
-        const double ml = double(body.size()) * cells.cellMl;
-        if (ml >= leastMl && mouths > 0.0)
-            all.push_back({placeMm(sum / double(body.size())), placeMm(mouthSum / mouths), ml,
-                           mouths * cellMm.x * cellMm.y});
+        while (!atMouth.empty()) {
+            std::vector<std::size_t> mouth{*atMouth.begin()};
+            atMouth.erase(atMouth.begin());
+            floodFill(mouth, cornerNeighbours(cells.grid),
+                      [&](std::size_t next) { return atMouth.erase(next) > 0; });
+            int faces = 0;
+            for (const std::size_t m : mouth)
+                faces += facesOut(m);
+            air.mouths.push_back({middleMm(mouth), faces * cellMm.x * cellMm.y});
+        }
+        if (!air.mouths.empty()) all.push_back(std::move(air));
     }
     return all;
 }

@@ -27,9 +27,14 @@ enum class Content : std::uint8_t {
 /// Air of the room that tissue encloses in every slice that it lies in, and that the rest of it
 /// reaches from others, 100 ml and more: of bowel that a stoma opens, or of a hollow table.
 struct EnclosedRoomAir {
+    /// Where the rest of the room's air begins; a loop stoma has two.
+    struct Mouth {
+        glm::dvec3 placeMm{0.0};  ///< its middle
+        double areaMm2 = 0.0;
+    };
     glm::dvec3 placeMm{0.0};  ///< its middle
-    glm::dvec3 mouthMm{0.0};  ///< where the rest of the room's air begins
-    double ml = 0.0, mouthMm2 = 0.0;
+    double ml = 0.0;
+    std::vector<Mouth> mouths;  ///< one or more
 };
 
 struct BowelContents {

@@ -13,6 +13,7 @@
 #include "segmentation/metal.h"
 #include "segmentation/record_colon.h"
 #include "segmentation/thin_walls.h"
+#include "segmentation/told_places.h"
 #include "segmentation/tube_pieces.h"
 #include "segmentation/untagged_levels.h"
 #include "segmentation/untagged_pools.h"
@@ -275,26 +276,30 @@ std::string alsoTold(const BowelContents& contents) {
     return told;
 }
 
-// Of the room's air what the trunk encloses but for a mouth no wider than bowel, a table's apart.
+// Of the room's air what the trunk encloses but for mouths no wider than bowel, a table's apart.
 std::optional<std::string> openBowelIn(const BowelContents& contents,
                                        std::span<const glm::vec3> softTissueMm) {
     constexpr double mostMouthMm2 = 2000.0, mostAside = 0.9;
     const BodyFrame frame = findBodyFrame(softTissueMm, -1e9, 1e9);
     double sumMl = 0.0;
-    std::string places;
+    ToldPlaces mouths;
     for (const EnclosedRoomAir& air : contents.enclosedRoomAir) {
         const glm::dvec3 at = glm::abs(frame.place(air.placeMm));
-        if (air.mouthMm2 > mostMouthMm2 || at.x > mostAside || at.y > mostAside) continue;
+        const bool isWide = std::ranges::any_of(
+            air.mouths,
+            [&](const EnclosedRoomAir::Mouth& mouth) { return mouth.areaMm2 > mostMouthMm2; });
+        if (isWide || at.x > mostAside || at.y > mostAside) continue;
         sumMl += air.ml;
-        places += (places.empty() ? "" : ", ") + placeText(air.mouthMm);
+        for (const EnclosedRoomAir::Mouth& mouth : air.mouths)
+            mouths.add(mouth.placeMm);
     }
-    if (places.empty()) return std::nullopt;
+    if (mouths.none()) return std::nullopt;
     return printed(
                "%.0f ml of air in the body are open to the room's, as through a stoma, and "
-               "were taken for it: if they are bowel's, set up a wall where it opens (--cut "
-               "X,Y,Z,R), near ",
+               "were taken for it: if they are bowel's, set up a wall (--cut X,Y,Z,R) between the "
+               "skin and ",
                sumMl) +
-           places;
+           mouths.text();
 }
 
 /// The contents of a scan, with what a reader must know of it: slices that do not follow each

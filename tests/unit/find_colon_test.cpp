@@ -1075,6 +1075,33 @@ TEST(FindColon, ACutPartsAnOpenStomaFromTheRoom) {
     EXPECT_EQ(labelledMl(*cut, [&](glm::dvec3 p) { return p.x > ball.centreMm.x; }), 0.0);
 }
 
+// Bowel that two stomas open is told by the place of each, not by what lies midway.
+TEST(FindColon, EachMouthOfBowelThatIsOpenToTheRoomIsTold) {
+    constexpr double lowMm = 150.0, highMm = 280.0, radiusMm = 10.0;
+    const Capsule between{{63, 130, 180}, {70, 118, 250}, 26};
+    Drawing drawing = Drawing::supine();
+    drawing.paint(-990, [&](glm::dvec3 p) {
+        return outsideMm(between, p) < 0.0 || (inColon(p) && p.x < 100.0);
+    });
+    for (const double z : {lowMm, highMm}) {
+        const Capsule stoma{{65, 125, z}, {-5, 125, z}, radiusMm};
+        drawing.paint(-990, [&](glm::dvec3 p) { return outsideMm(stoma, p) < 0.0; });
+    }
+    const auto found = find(drawing.scan());
+    ASSERT_FALSE(found);
+    const std::string& message = found.error().message;
+    EXPECT_NE(message.find("between the skin and"), std::string::npos);
+    bool low = false, high = false;
+    for (const glm::dvec3 p : placesIn(message)) {
+        const bool atLow = std::abs(p.z - lowMm) < 2.0 * radiusMm,
+                   atHigh = std::abs(p.z - highMm) < 2.0 * radiusMm;
+        EXPECT_TRUE(atLow || atHigh) << message;
+        EXPECT_TRUE(inColon(p)) << message;
+        low = low || (atLow && p.z > lowMm), high = high || (atHigh && p.z < highMm);
+    }
+    EXPECT_TRUE(low && high) << message;
+}
+
 TEST(FindColon, IsTheSameForAnyNumberOfThreads) {
     const CtScan scan = Drawing::supine().scan();
     ColonOptions one, three;
