@@ -81,9 +81,7 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     }
     if (piece < 0) {
         return fail(ErrorKind::badInput,
-                    "there is no air or fluid of a lumen within 3 mm of this point, or its gas is "
-                    "open to the air around the patient: where it opens, as at a stoma, set up a "
-                    "wall (--cut)",
+                    "there is no air or fluid of a lumen within 3 mm of this point",
                     printed("%.1f,%.1f,%.1f", pointMm.x, pointMm.y, pointMm.z));
     }
     return piece;
@@ -93,15 +91,23 @@ Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
 GivenPieces givenPieces(const TubePieces& cut, const ColonEdits& edits,
                         std::optional<Error>& missing) {
     GivenPieces given;
-    for (const auto& [points, pieces] :
-         {std::pair(&edits.seedsMm, &given.colon), std::pair(&edits.excludesMm, &given.notColon)}) {
-        for (const glm::dvec3 p : *points) {
-            const auto piece = pieceAt(cut, p);
-            if (piece)
-                pieces->push_back(*piece);
-            else if (!missing)
-                missing = piece.error();
+    for (const glm::dvec3 p : edits.seedsMm) {
+        const auto piece = pieceAt(cut, p);
+        if (piece) {
+            given.colon.push_back(*piece);
+        } else if (!missing) {
+            missing = piece.error();
+            missing->message +=
+                ", or its gas is open to the air around the patient: where it opens, as at a "
+                "stoma, set up a wall (--cut)";
         }
+    }
+    for (const glm::dvec3 p : edits.excludesMm) {
+        const auto piece = pieceAt(cut, p);
+        if (piece)
+            given.notColon.push_back(*piece);
+        else if (!missing)
+            missing = piece.error();
     }
     for (const auto& [a, b] : edits.joins) {
         const auto from = pieceAt(cut, a), to = pieceAt(cut, b);
