@@ -203,8 +203,9 @@ Json jsonOf(const std::array<SegmentDistension, colonSegments>& distension) {
 
 std::string qualityJson(const ColonRecord& record) {
     std::array<double, 3> leftOutMl{};  // by BodyContent
+    double farGasMl = 0.0;
     for (const LeftOutBody& body : record.leftOut)
-        leftOutMl[std::size_t(body.content)] += body.volumeMl;
+        (body.isFarGas() ? farGasMl : leftOutMl[std::size_t(body.content)]) += body.volumeMl;
     const auto& end = record.endsAt;
     return Json{{"confidence", rounded(record.confidence)},
                 {"chain_confidence", rounded(record.chainConfidence)},
@@ -216,6 +217,7 @@ std::string qualityJson(const ColonRecord& record) {
                 {"junctions", listOf(record.junctions)},
                 {"runners_up", listOf(record.runnersUp)},
                 {"left_out_gas_ml", rounded(leftOutMl[0])},
+                {"left_out_far_gas_ml", rounded(farGasMl)},
                 {"left_out_tagged_ml", rounded(leftOutMl[1])},
                 {"left_out_untagged_ml", rounded(leftOutMl[2])},
                 {"left_out", listOf(record.leftOut)},

@@ -75,6 +75,8 @@ struct LeftOutBody {
         constexpr double nearMm = 20.0;
         return opens || likeColon || distanceMm < nearMm;
     }
+    /// Listed for being much, whatever it is.
+    bool isFarGas() const { return content == BodyContent::gas && !isNear(); }
 };
 
 /// A wall too thin for the scan to show whole, set up again.

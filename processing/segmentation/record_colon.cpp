@@ -365,15 +365,11 @@ private:
         }
     }
 
-    static bool isFarGas(const LeftOutBody& body) {
-        return body.content == BodyContent::gas && !body.isNear();
-    }
-
     void sayFarGas() {
         double sumMl = 0.0;
         ToldPlaces places;
         for (const LeftOutBody& body : made_.leftOut) {
-            if (!isFarGas(body)) continue;
+            if (!body.isFarGas()) continue;
             sumMl += body.volumeMl;
             places.add(body.centreMm);
         }
@@ -397,7 +393,7 @@ private:
                 const LeftOutBody& body = made_.leftOut[m];
                 if (said[m] || body.content != first.content || body.nearest != first.nearest ||
                     body.opens != first.opens || body.likeColon != first.likeColon ||
-                    (!body.opens && body.volumeMl < tellMl) || isFarGas(body))
+                    (!body.opens && body.volumeMl < tellMl) || body.isFarGas())
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;

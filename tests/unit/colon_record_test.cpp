@@ -56,10 +56,12 @@ TEST(ColonRecord, ItsJsonSaysAllOfIt) {
     record.endsAt = {1.0 / 3.0, -2.0, 0.125};
     record.leftOut.push_back({{}, 3.5, BodyContent::tagged});
     record.leftOut.push_back({{}, 7.25, BodyContent::untagged});
+    record.leftOut.push_back({{}, 64.0, BodyContent::gas, ColonPart::rectum, 90.0});
     const auto other = nlohmann::json::parse(qualityJson(record));
     EXPECT_EQ(other.at("tagging_hu"), 312.5);
     EXPECT_EQ(other.at("ends_at"), nlohmann::json({0.33, -2.0, 0.13}));
     EXPECT_EQ(other.at("left_out_gas_ml"), 28.0);
+    EXPECT_EQ(other.at("left_out_far_gas_ml"), 64.0) << "that of the stomach, say, is apart";
     EXPECT_EQ(other.at("left_out_tagged_ml"), 3.5);
     EXPECT_EQ(other.at("left_out_untagged_ml"), 7.25);
     EXPECT_EQ(other.at("left_out")[2].at("content"), "untagged");
