@@ -12,7 +12,8 @@
 namespace haustra::cad {
 
 /// What such a finding's score is, unless a model's operating point is higher. A rule tells it,
-/// which has not learnt; how often it was right is known of planted ones alone (METHODS §24.6).
+/// which has not learnt; how often it was right is known of planted ones alone: METHODS §24.6 "How
+/// well".
 inline constexpr double annularScore = 0.9;
 
 /// A stretch of the colon whose wall is thick all around.
