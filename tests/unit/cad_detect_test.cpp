@@ -454,12 +454,11 @@ TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) 
     ball.flat.camera = {0, 1, 1, 0};
     ball.flat.cameras = {{{0, -10, 0}, 0.0}, {{0, 10, 0}, 20.0}};
     ball.flat.sourceTriangle = {0, 1};
-    cad::WallEvidence evidence;
-    evidence.samples.mesh.vertices.resize(1);
     cad::Candidate candidate;
     candidate.lesion.topMm = {25, 5, 0}, candidate.lesion.centreMm = {27, 5, 0};
     candidate.probability = 1.0;
     auto colon = ball.colon();
+    auto evidence = cad::gatherEvidence(colon, {});
     colon.pieces = {{ColonPart::rectum, {0, 0, 0}, 15.0}, {ColonPart::cecum, {32, 0, 0}, 5.0}};
     evidence.alongColon = std::make_unique<const cad::AlongColon>(colon.flat, colon.centerline);
     const Findings findings = cad::findingsOf(colon, evidence, {candidate}, {});
