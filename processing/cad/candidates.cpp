@@ -34,7 +34,7 @@ std::vector<std::vector<std::uint32_t>> componentsWhere(const WallSamples& wall,
     std::vector<std::vector<std::uint32_t>> components;
     SampleNumbers taken(wall.mesh.vertices.size());
     for (std::uint32_t seed = 0; seed < wall.mesh.vertices.size(); ++seed) {
-        if (taken.has(seed) || !holds(seed)) continue;
+        if (!holds(seed) || taken.has(seed)) continue;
         taken.add(seed);
         components.push_back(connected(wall, {seed}, taken, holds));
     }
@@ -180,7 +180,7 @@ private:
     const WallSamples& wall_;
     // Of each sample: in the patch, beside it, or in which flood. Marks only grow from patch to
     // patch, so that those of earlier ones need not be taken off.
-    std::vector<std::uint32_t> mark_;
+    ZeroedArray<std::uint32_t> mark_;
     std::uint32_t marks_ = 0, inPatch_ = 0, beside_ = 0, firstFlood_ = 0;
     std::vector<Flood> floods_;
     std::vector<std::size_t> met_;  // floods that are one, as disjoint sets

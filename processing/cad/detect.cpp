@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <iterator>
 #include <numeric>
 #include <thread>
@@ -73,34 +72,54 @@ std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& ev
     return findings;
 }
 
-// Of every sample, in T. Samples lie denser than the stencil's steps, so texture is measured at a
-// maximal independent set of them, and each of the others has the distance of its lowest-numbered
-// neighbour in the set.
-std::vector<float> textureDistances(const WallEvidence& evidence, const TextureStencil& stencil,
-                                    std::span<const glm::vec3> colors, const TextureModel& texture,
-                                    int threads) {
-    const WallSamples& wall = evidence.samples;
-    std::vector<std::uint32_t> measuredAt(colors.size()), measured;
-    std::iota(measuredAt.begin(), measuredAt.end(), 0u);
-    for (std::uint32_t v = 0; v < measuredAt.size(); ++v) {
+// A maximal independent set of the samples, ascending; `nearest`: of each sample itself if it is in
+// the set, else its lowest-numbered neighbour that is.
+std::vector<std::uint32_t> independentSamples(const WallSamples& wall,
+                                              std::vector<std::uint32_t>& nearest) {
+    std::vector<std::uint32_t> independent;
+    nearest.resize(wall.mesh.vertices.size());
+    for (std::uint32_t v = 0; v < nearest.size(); ++v) {
+        nearest[v] = v;
         for (const std::uint32_t next : wall.around(v)) {
             if (next > v) break;
-            if (measuredAt[next] != next) continue;
-            measuredAt[v] = next;
+            if (nearest[next] != next) continue;
+            nearest[v] = next;
             break;
         }
-        if (measuredAt[v] == v) measured.push_back(v);
+        if (nearest[v] == v) independent.push_back(v);
     }
+    return independent;
+}
+
+// Of every sample, in T. Samples lie denser than the stencil's steps, so texture is measured at a
+// maximal independent set of them, and each of the others has the distance of one beside it.
+std::vector<float> textureDistances(const PreparedColon& colon, const WallEvidence& evidence,
+                                    const TextureModel& texture, int threads) {
+    std::vector<std::uint32_t> measuredAt, measured;
+    std::vector<glm::vec3> along, colors;
+    std::optional<const TextureStencil> stencil;
+    parallelInvoke(
+        threads, [&] { measured = independentSamples(evidence.samples, measuredAt); },
+        [&] {
+            along = stripDirections(evidence.samples, colon.flat, threads);
+            stencil.emplace(evidence.samples, along);
+            colors.reserve(evidence.rays.size());
+            for (const BiopsyRay& ray : evidence.rays)
+                colors.push_back(ray.color);
+        });
     std::vector<float> distances(colors.size());
     parallelFor(measured.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
             const std::uint32_t v = measured[m];
-            const auto neighbours = stencil.around(v, evidence.shapes[v].intoWall);
+            const auto neighbours = stencil->around(v, evidence.shapes[v].intoWall);
             distances[v] = float(textureDistance(texture, textureVector(v, neighbours, colors)));
         }
     });
-    for (std::size_t v = 0; v < distances.size(); ++v)
-        distances[v] = distances[measuredAt[v]];
+    // Those of the set stay as they are, whichever thread writes them.
+    parallelFor(distances.size(), 65536, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            if (measuredAt[v] != v) distances[v] = distances[measuredAt[v]];
+    });
     return distances;
 }
 
@@ -284,29 +303,20 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
                                       const TextureModel* texture, const DetectOptions& options,
                                       const CadModel* model, std::vector<Candidate>* residue) {
     std::vector<float> distances;
-    if (texture) {
-        const auto along = stripDirections(evidence.samples, colon.flat);
-        const TextureStencil stencil(evidence.samples, along);
-        std::vector<glm::vec3> colors(evidence.rays.size());
-        std::transform(evidence.rays.begin(), evidence.rays.end(), colors.begin(),
-                       [](const BiopsyRay& ray) { return ray.color; });
-        distances = textureDistances(evidence, stencil, colors, *texture, options.threads);
-    }
+    if (texture) distances = textureDistances(colon, evidence, *texture, options.threads);
     // Each takes mostly one thread, so they go side by side.
     const int some = std::max(1, threadCount(options.threads) / 2);
     std::array<std::vector<Patch>, 3> made;
-    const std::array<std::function<void()>, 3> parts{
+    std::optional<const ResidueFilms> films;
+    parallelInvoke(
+        options.threads,
         [&] {
             if (texture) made[0] = patchesByTexture(evidence, distances, some);
         },
         [&] { made[1] = patchesByShape(evidence, Generator::shape, some); },
-        [&] { made[2] = patchesByShape(evidence, Generator::broadShape, some); }};
-    parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t part = begin; part < end; ++part)
-            parts[part]();
-    });
-    const ResidueFilms films(colon, evidence);
-    const Measures with{colon, evidence, films, distances, options.threads, options.progress};
+        [&] { made[2] = patchesByShape(evidence, Generator::broadShape, some); },
+        [&] { films.emplace(colon, evidence); });
+    const Measures with{colon, evidence, *films, distances, options.threads, options.progress};
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));

@@ -221,13 +221,14 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
         numbers.add(v);
         distances.push_back(0.0);
     }
+    const glm::dvec3* const places = wall.mesh.vertices.data();
     // Steps are short beside the width, so a breadth-first order is near enough.
     for (std::uint32_t head = 0; head < numbers.count(); ++head) {
         const std::uint32_t v = numbers.sample(head);
+        const double sofar = distances[head];
         for (const std::uint32_t next : wall.around(v)) {
             if (numbers.has(next)) continue;
-            const double mm =
-                distances[head] + glm::distance(wall.mesh.vertices[v], wall.mesh.vertices[next]);
+            const double mm = sofar + glm::distance(places[v], places[next]);
             if (mm > byMm) continue;
             numbers.add(next);
             distances.push_back(mm);

@@ -3,6 +3,7 @@
 
 #include "cad/candidates.h"
 #include "core/findings.h"
+#include "core/zeroed_array.h"
 
 #include <cstdint>
 #include <optional>
@@ -40,28 +41,34 @@ struct Lesion {
 bool standsOnStalk(const Lesion& lesion);
 
 /// Some samples, numbered from 0 in the order in which they were added. Emptied at no cost, so that
-/// one serves for patch after patch (Briggs and Torczon, ACM LOPLAS 1993; 2: 59). Belongs to one
-/// thread.
+/// one serves for patch after patch: numbers grow from one to the next. Belongs to one thread.
 class SampleNumbers {
 public:
-    explicit SampleNumbers(std::size_t samples) : numberOf_(samples, 0) {}
-    void clear() { samples_.clear(); }
+    explicit SampleNumbers(std::size_t samples) : size_(samples), numberOf_(samples) {}
+    void clear() {
+        first_ += count();
+        samples_.clear();
+        // So that numbers never run out; all samples at once may be added next.
+        if (first_ < (1u << 31)) return;
+        numberOf_ = ZeroedArray<std::uint32_t>(size_);
+        first_ = 1;
+    }
     void add(std::uint32_t sample) {
         if (has(sample)) return;
-        numberOf_[sample] = std::uint32_t(samples_.size());
+        numberOf_[sample] = first_ + count();
         samples_.push_back(sample);
     }
-    bool has(std::uint32_t sample) const {
-        const std::uint32_t n = numberOf_[sample];
-        return n < samples_.size() && samples_[n] == sample;
-    }
+    bool has(std::uint32_t sample) const { return numberOf_[sample] >= first_; }
     /// Of a sample that has been added.
-    std::uint32_t number(std::uint32_t sample) const { return numberOf_[sample]; }
+    std::uint32_t number(std::uint32_t sample) const { return numberOf_[sample] - first_; }
     std::uint32_t sample(std::uint32_t number) const { return samples_[number]; }
     std::uint32_t count() const { return std::uint32_t(samples_.size()); }
 
 private:
-    std::vector<std::uint32_t> numberOf_, samples_;
+    std::size_t size_;
+    std::uint32_t first_ = 1;  // what the first is numbered by now: less is of patches before
+    ZeroedArray<std::uint32_t> numberOf_;
+    std::vector<std::uint32_t> samples_;
 };
 
 /// Numbers the samples within a distance of the patch along the wall: the patch's first, in their

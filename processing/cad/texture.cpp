@@ -43,6 +43,7 @@ TextureStencil::Neighbours TextureStencil::around(std::uint32_t sample, glm::vec
                         : glm::normalize(glm::cross(
                               n, std::abs(n.x) < 0.6f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
     const glm::vec3 aside = glm::cross(up, n);
+    const glm::vec3* const places = places_.data();  // looked at too often to check the index
     Neighbours neighbours;
     for (std::size_t s = 0; s < stencil.size(); ++s) {
         // Downhill along the mesh to where the neighbour should be, from a nearer one.
@@ -50,15 +51,17 @@ TextureStencil::Neighbours TextureStencil::around(std::uint32_t sample, glm::vec
             at + float(textureStepMm) * (float(stencil[s].x) * aside + float(stencil[s].y) * up);
         std::uint32_t best = onTheWay[s] < 0 ? sample : neighbours[std::size_t(onTheWay[s])];
         const auto squaredTo = [&](std::uint32_t other) {
-            const glm::vec3 off = places_[other] - wanted;
+            const glm::vec3 off = places[other] - wanted;
             return glm::dot(off, off);
         };
         float least = squaredTo(best);
-        for (bool nearer = true; nearer;) {
-            nearer = false;
-            for (const std::uint32_t next : samples_.around(best)) {
+        for (std::uint32_t from = ~0u; best != from;) {
+            from = best;
+            for (const std::uint32_t next : samples_.around(from)) {
+                // Chosen without a branch: which is the nearest cannot be predicted.
                 const float squared = squaredTo(next);
-                if (squared < least) least = squared, best = next, nearer = true;
+                best = squared < least ? next : best;
+                least = std::min(squared, least);
             }
         }
         neighbours[s] = best;

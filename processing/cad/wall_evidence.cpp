@@ -7,9 +7,7 @@
 #include "core/quantile.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 namespace haustra::cad {
@@ -20,20 +18,30 @@ namespace {
 constexpr double leastRebuiltMm = 6.0, rebuiltVoxels = 2.5;
 
 // What nobody has seen because there is a bridge or a wall that was set up again.
-std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon, const WallSamples& samples,
+// `bridged`: of the surface's triangles.
+std::vector<std::uint8_t> inventedSamples(const PreparedColon& colon,
+                                          const std::vector<std::uint8_t>& bridged,
+                                          const WallSamples& samples,
                                           const std::vector<BiopsyRay>& rays, int threads) {
     const glm::dvec3 spacing = colon.lumen.grid().spacingMm();
     const double thinMm = rebuiltVoxels * std::max({spacing.x, spacing.y, spacing.z});
-    const auto bridged = bridgedTriangles(colon.surface, colon.lumen);
     std::vector<std::uint8_t> invented(samples.mesh.vertices.size(), 0);
     for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t) {
         if (!bridged[std::size_t(samples.sourceTriangle[t])]) continue;
         for (int n = 0; n < 3; ++n)
             invented[std::size_t(samples.mesh.triangles[t][n])] = 1;
     }
-    parallelFor(invented.size(), 8192, threads, [&](std::size_t begin, std::size_t end) {
+    parallelFor(invented.size(), 2048, threads, [&](std::size_t begin, std::size_t end) {
+        // Samples near to each other have near numbers: most blocks of them have no such wall.
+        glm::dvec3 low(1e30), high(-1e30);
+        for (std::size_t v = begin; v < end; ++v) {
+            low = glm::min(low, samples.mesh.vertices[v]);
+            high = glm::max(high, samples.mesh.vertices[v]);
+        }
         for (const RebuiltWallRecord& wall : colon.rebuilt) {
             const double reachMm = std::max(leastRebuiltMm, std::sqrt(wall.areaMm2 / 3.14) + 3.0);
+            if (glm::distance(glm::clamp(wall.placeMm, low, high), wall.placeMm) > reachMm)
+                continue;
             for (std::size_t v = begin; v < end; ++v) {
                 const glm::dvec3 off = samples.mesh.vertices[v] - wall.placeMm;
                 const double mm2 = glm::dot(off, off);
@@ -75,6 +83,17 @@ std::vector<LumenLabel> labelsBefore(const PreparedColon& colon, const WallSampl
         }
     });
     return labels;
+}
+
+// From each sample along its shape's normal, by the transfer function that is there.
+void castRays(const PreparedColon& colon, int threads, WallEvidence& evidence) {
+    const BiopsyTable table(evidence.transferFunction);
+    const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
+    parallelFor(evidence.rays.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v)
+            evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
+                                             glm::dvec3(evidence.shapes[v].intoWall));
+    });
 }
 
 std::vector<std::uint8_t> samplesBehind(const std::vector<LumenLabel>& labels, LumenLabel what) {
@@ -132,53 +151,55 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
     const glm::dvec3 spacing = colon.cleansed.grid().spacingMm();
     const double broadReachMm =
         kernelDeviations * broadSigmaMm + std::max({spacing.x, spacing.y, spacing.z});
-    // Sampling takes mostly one thread, so the rest is made beside it.
+    // Dividing the wall takes one thread, as parts of the rest do: beside it others are kept busy.
     std::unique_ptr<const SmoothScan> broad;
     const auto smoothed = [&](double sigmaMm, double reachMm) {
-        return std::make_unique<const SmoothScan>(
-            smoothedAround(colon, sigmaMm, std::max(1, threads - 1), reachMm));
+        return std::make_unique<const SmoothScan>(smoothedAround(colon, sigmaMm, threads, reachMm));
     };
-    const std::array<std::function<void()>, 3> parts{
+    std::vector<std::uint8_t> bridged;  // of the surface's triangles
+    const bool sampled = !evidence.samples.mesh.vertices.empty();
+    parallelInvoke(
+        options.threads,
         [&] {
-            if (evidence.samples.mesh.vertices.empty())
-                evidence.samples = sampleWall(colon.surface, sampleSpacingMm, options.threads);
+            if (!sampled) evidence.samples = dividedWall(colon.surface, sampleSpacingMm);
         },
         [&] {
             evidence.smooth = smoothed(shapeSigmaMm, std::max(biopsyReachMm, deepestWallMm + 2.0));
-            broad = smoothed(broadSigmaMm, broadReachMm);
         },
+        [&] { broad = smoothed(broadSigmaMm, broadReachMm); },
+        [&] { bridged = bridgedTriangles(colon.surface, colon.lumen); },
         [&] {
             if (!evidence.alongColon)
                 evidence.alongColon =
                     std::make_unique<const AlongColon>(colon.flat, colon.centerline);
-        }};
-    parallelFor(parts.size(), 1, options.threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t part = begin; part < end; ++part)
-            parts[part]();
-    });
+        });
     tell(0.4);
-    evidence.shapes = shapesOf(evidence.samples, *evidence.smooth, options.threads);
-    evidence.broadShapes = shapesOf(evidence.samples, *broad, options.threads);
+    parallelInvoke(
+        options.threads,
+        [&] {
+            if (!sampled) joinSamples(evidence.samples);
+        },
+        [&] {
+            evidence.rays.resize(evidence.samples.mesh.vertices.size());
+            evidence.statistics = wallStatistics(colon, *evidence.smooth);
+            evidence.transferFunction = options.transferFunction
+                                            ? *options.transferFunction
+                                            : automaticBiopsyTransfer(evidence.statistics);
+        },
+        [&] { evidence.shapes = shapesOf(evidence.samples, *evidence.smooth, threads); },
+        [&] { evidence.broadShapes = shapesOf(evidence.samples, *broad, threads); });
     broad.reset();
     tell(0.6);
-    const auto before = labelsBefore(colon, evidence.samples, evidence.shapes, options.threads);
-    evidence.wet = samplesBehind(before, LumenLabel::tagged);
-    evidence.untagged = samplesBehind(before, LumenLabel::untagged);
-    evidence.formerFluid = FormerFluid(evidence.samples.mesh.vertices, evidence.wet);
-    evidence.statistics = wallStatistics(colon, *evidence.smooth);
-    evidence.transferFunction = options.transferFunction
-                                    ? *options.transferFunction
-                                    : automaticBiopsyTransfer(evidence.statistics);
-    const BiopsyTable table(evidence.transferFunction);
-    const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
-    evidence.rays.resize(evidence.samples.mesh.vertices.size());
-    parallelFor(
-        evidence.rays.size(), 4096, options.threads, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v)
-                evidence.rays[v] = castBiopsyRay(scan, table, evidence.samples.mesh.vertices[v],
-                                                 glm::dvec3(evidence.shapes[v].intoWall));
-        });
-    evidence.unseen = inventedSamples(colon, evidence.samples, evidence.rays, options.threads);
+    parallelInvoke(
+        options.threads,
+        [&] {
+            const auto before = labelsBefore(colon, evidence.samples, evidence.shapes, threads);
+            evidence.wet = samplesBehind(before, LumenLabel::tagged);
+            evidence.untagged = samplesBehind(before, LumenLabel::untagged);
+            evidence.formerFluid = FormerFluid(evidence.samples.mesh.vertices, evidence.wet);
+        },
+        [&] { castRays(colon, threads, evidence); });
+    evidence.unseen = inventedSamples(colon, bridged, evidence.samples, evidence.rays, threads);
     tell(1.0);
     return evidence;
 }

@@ -1,5 +1,7 @@
 #include "cad/wall_frames.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +24,8 @@ glm::dvec3 alongStrip(const FlatMap& flat, const glm::ivec3& t) {
 
 }  // namespace
 
-std::vector<glm::vec3> stripDirections(const WallSamples& samples, const FlatMap& flat) {
+std::vector<glm::vec3> stripDirections(const WallSamples& samples, const FlatMap& flat,
+                                       int threads) {
     const std::int32_t sources =
         samples.sourceTriangle.empty()
             ? 0
@@ -33,15 +36,16 @@ std::vector<glm::vec3> stripDirections(const WallSamples& samples, const FlatMap
         if (source >= 0 && source < sources)
             ofSource[std::size_t(source)] += glm::vec3(alongStrip(flat, flat.surface.triangles[t]));
     }
-    std::vector<glm::vec3> directions(samples.mesh.vertices.size(), glm::vec3(0.0f));
-    for (std::size_t t = 0; t < samples.mesh.triangles.size(); ++t)
-        for (int n = 0; n < 3; ++n)
-            directions[std::size_t(samples.mesh.triangles[t][n])] +=
-                ofSource[std::size_t(samples.sourceTriangle[t])];
-    for (glm::vec3& direction : directions) {
-        const float length = glm::length(direction);
-        direction = length > 1e-6f ? direction / length : glm::vec3(0.0f, 0.0f, 1.0f);
-    }
+    std::vector<glm::vec3> directions(samples.mesh.vertices.size());
+    parallelFor(directions.size(), 16384, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            glm::vec3 sum(0.0f);
+            for (const std::uint32_t t : samples.trianglesAround(std::uint32_t(v)))
+                sum += ofSource[std::size_t(samples.sourceTriangle[t])];
+            const float length = glm::length(sum);
+            directions[v] = length > 1e-6f ? sum / length : glm::vec3(0.0f, 0.0f, 1.0f);
+        }
+    });
     return directions;
 }
 

@@ -1,10 +1,7 @@
 #include "cad/wall_samples.h"
 
-#include "core/parallel.h"
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace haustra::cad {
@@ -124,39 +121,44 @@ void findTriangles(WallSamples& samples) {
             samples.triangles[at[std::size_t(samples.mesh.triangles[t][n])]++] = std::uint32_t(t);
 }
 
-// By the triangles around each vertex.
-void joinNeighbours(WallSamples& samples, int threads) {
+// By the triangles around each vertex: the vertex is told to their other corners, in ascending
+// order, so that what each has been told of is in ascending order, too. Without a branch that
+// depends on the mesh: what a corner knows already goes to a spare place at the end.
+void joinNeighbours(WallSamples& samples) {
     const std::size_t count = samples.mesh.vertices.size();
-    constexpr std::size_t block = 16384;
-    // Of each block of vertices, one after the other.
-    std::vector<std::vector<std::uint32_t>> found((count + block - 1) / block);
-    samples.begin.assign(count + 1, 0);
-    parallelFor(count, block, threads, [&](std::size_t from, std::size_t to) {
-        std::vector<std::uint32_t>& list = found[from / block];
-        list.reserve(8 * (to - from));
-        for (std::size_t v = from; v < to; ++v) {
-            const std::size_t begin = list.size();
-            for (const std::uint32_t number : samples.trianglesAround(std::uint32_t(v))) {
-                const glm::ivec3 t = samples.mesh.triangles[number];
+    constexpr std::uint32_t none = ~0u;
+    const glm::ivec3* const triangles = samples.mesh.triangles.data();
+    const auto tell = [&](const auto& toldOf) {
+        std::vector<std::uint32_t> last(count, none);
+        std::uint32_t* const toldLast = last.data();
+        for (std::uint32_t v = 0; v < count; ++v) {
+            toldLast[v] = v;  // of itself
+            for (const std::uint32_t triangle : samples.trianglesAround(v)) {
+                const glm::ivec3 corners = triangles[triangle];
                 for (int n = 0; n < 3; ++n) {
-                    const auto corner = std::uint32_t(t[n]);
-                    const auto own =
-                        std::ranges::subrange(list.begin() + std::ptrdiff_t(begin), list.end());
-                    if (corner != v && std::ranges::find(own, corner) == own.end())
-                        list.push_back(corner);
+                    const auto corner = std::uint32_t(corners[n]);
+                    toldOf(corner, v, toldLast[corner] != v);
+                    toldLast[corner] = v;
                 }
             }
-            std::sort(list.begin() + std::ptrdiff_t(begin), list.end());
-            samples.begin[v + 1] = std::uint32_t(list.size() - begin);
         }
-    });
+    };
+    std::vector<std::uint32_t>& begin = samples.begin;
+    begin.assign(count + 1, 0);
+    std::uint32_t* const counts = begin.data() + 1;
+    tell([&](std::uint32_t corner, std::uint32_t, bool isNew) { counts[corner] += isNew; });
     for (std::size_t v = 0; v < count; ++v)
-        samples.begin[v + 1] += samples.begin[v];
-    samples.neighbours.resize(samples.begin[count]);
-    parallelFor(found.size(), 1, threads, [&](std::size_t from, std::size_t to) {
-        for (std::size_t n = from; n < to; ++n)
-            std::ranges::copy(found[n], samples.neighbours.begin() + samples.begin[n * block]);
+        begin[v + 1] += begin[v];
+    const std::uint32_t spare = begin[count];
+    samples.neighbours.resize(spare + 1);
+    std::uint32_t* const neighbours = samples.neighbours.data();
+    std::vector<std::uint32_t> ends(begin.begin(), begin.end() - 1);
+    std::uint32_t* const next = ends.data();
+    tell([&](std::uint32_t corner, std::uint32_t v, bool isNew) {
+        neighbours[isNew ? next[corner] : spare] = v;
+        next[corner] += isNew;
     });
+    samples.neighbours.pop_back();
 }
 
 // Interleaves the bits of three numbers below 1024: what is near in space is mostly near in order.
@@ -217,7 +219,7 @@ std::size_t expectedSamples(const TriMesh& surface, double mostSpacingMm) {
 
 }  // namespace
 
-WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads) {
+WallSamples dividedWall(const TriMesh& surface, double mostSpacingMm) {
     WallSamples samples;
     const std::size_t expected = expectedSamples(surface, mostSpacingMm);
     samples.mesh.vertices.reserve(expected);
@@ -230,9 +232,18 @@ WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads
         samples.sourceTriangle.resize(samples.mesh.triangles.size(), t);
     }
     renumber(samples.mesh);
+    return samples;
+}
+
+void joinSamples(WallSamples& samples) {
     measureAreas(samples);
     findTriangles(samples);
-    joinNeighbours(samples, threads);
+    joinNeighbours(samples);
+}
+
+WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm) {
+    WallSamples samples = dividedWall(surface, mostSpacingMm);
+    joinSamples(samples);
     return samples;
 }
 

@@ -38,6 +38,11 @@ struct WallSamples {
 /// takes an odd number of pieces, in all triangles that have it at once, until none is left: the
 /// mesh stays as closed as it was. Edges in `mostSpacingMm` > 0; indices in range. O(n log n) in
 /// the number of samples.
-WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm, int threads = 0);
+WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm);
+
+/// The two halves of that, as what is measured at a place needs the first alone: the mesh with the
+/// triangles' sources, and then areas and what is around each sample.
+WallSamples dividedWall(const TriMesh& surface, double mostSpacingMm);
+void joinSamples(WallSamples& samples);
 
 }  // namespace haustra::cad

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <functional>
@@ -29,6 +30,17 @@ void parallelForEach(std::size_t count, int threads, const MakeScratch& makeScra
         auto scratch = makeScratch();
         for (std::size_t n; (n = next++) < count;)
             body(n, scratch);
+    });
+}
+
+/// Runs different pieces of work side by side, each on one of `threads` threads (≤ 0: all cores),
+/// begun in their order. Returns when all are done. Else as parallelFor.
+template <class... Parts>
+void parallelInvoke(int threads, const Parts&... parts) {
+    const std::array<std::function<void()>, sizeof...(parts)> all{std::cref(parts)...};
+    parallelFor(all.size(), 1, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t part = begin; part < end; ++part)
+            all[part]();
     });
 }
 

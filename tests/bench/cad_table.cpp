@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -54,6 +55,15 @@ void timeWholeMucosa(const cad::WallEvidence& evidence) {
     std::printf("%-44s %8.0f s (one in %zu took %.2f s)\n", "gradient concentration everywhere",
                 (milliseconds() - start) / 1e3 * double(stride), stride,
                 (milliseconds() - start) / 1e3);
+}
+
+/// Of two programs that measure the same it is the same (FNV-1a over the features' bits).
+std::uint32_t fingerprintOf(const std::vector<cad::Candidate>& candidates) {
+    std::uint32_t hash = 2166136261u;
+    for (const cad::Candidate& candidate : candidates)
+        for (const float feature : candidate.features)
+            hash = (hash ^ std::bit_cast<std::uint32_t>(feature)) * 16777619u;
+    return hash;
 }
 
 /// Colours the pixels that lie on a candidate's patch.
@@ -155,6 +165,7 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
     auto candidates = timed("candidates and their features", [&] {
         return cad::findCandidates(colon, evidence, &model.texture, {}, &model, &residue);
     });
+    std::printf("fingerprint of all their features: %08x\n", fingerprintOf(candidates));
     const auto before =
         std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf < 0; });
     const auto levels = std::ptrdiff_t(candidates.size()) - before;

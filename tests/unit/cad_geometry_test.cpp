@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -209,6 +210,28 @@ TEST(WallSamples, LieCloseOnTheSurfaceItself) {
         corners.erase(v);
         EXPECT_TRUE(std::ranges::equal(samples.trianglesAround(v), triangles));
         EXPECT_TRUE(std::ranges::equal(samples.around(v), corners));
+    }
+}
+
+TEST(SampleNumbers, HoldWhatWasAddedSinceTheyWereEmptied) {
+    cad::SampleNumbers numbers(10);
+    std::mt19937 random(5);
+    for (int round = 0; round < 50; ++round) {
+        numbers.clear();
+        std::vector<std::uint32_t> added;
+        for (std::uint32_t n = 0; n < 12; ++n) {
+            const std::uint32_t sample = random() % 10;
+            numbers.add(sample);
+            if (std::ranges::find(added, sample) == added.end()) added.push_back(sample);
+            ASSERT_EQ(numbers.count(), added.size());
+        }
+        for (std::uint32_t sample = 0; sample < 10; ++sample) {
+            const auto at = std::ranges::find(added, sample);
+            ASSERT_EQ(numbers.has(sample), at != added.end());
+            if (at == added.end()) continue;
+            ASSERT_EQ(numbers.number(sample), at - added.begin());
+            ASSERT_EQ(numbers.sample(numbers.number(sample)), sample);
+        }
     }
 }
 

@@ -113,7 +113,7 @@ TEST(TextureStencil, NeighboursAreThoseWithinTwoStepsAlongTheStripsAxes) {
             plane.triangles.push_back({at, at + side + 1, at + side});
         }
     }
-    const cad::WallSamples samples = cad::sampleWall(plane, 1.0, 1);
+    const cad::WallSamples samples = cad::sampleWall(plane, 1.0);
     ASSERT_EQ(samples.mesh.vertices.size(), plane.vertices.size()) << "none is divided";
     const std::vector<glm::vec3> along(plane.vertices.size(), glm::vec3(y + 0.7 * n));
     const cad::TextureStencil stencil(samples, along);

@@ -353,6 +353,21 @@ TEST(Parallel, EachIsDoneOnceByAThreadWithItsOwnScratch) {
         [](std::size_t, int) {});
 }
 
+TEST(Parallel, PiecesOfWorkAreDoneOnceEach) {
+    for (const int threads : {1, 2, 40}) {
+        std::atomic<int> first = 0, second = 0, third = 0;
+        parallelInvoke(
+            threads, [&] { ++first; }, [&] { parallelInvoke(threads, [&] { ++second; }); },
+            [&] { third += 10; });
+        EXPECT_EQ(first, 1);
+        EXPECT_EQ(second, 1);
+        EXPECT_EQ(third, 10);
+    }
+    EXPECT_THROW(parallelInvoke(
+                     2, [] {}, [] { throw std::runtime_error("the second"); }),
+                 std::runtime_error);
+}
+
 TEST(Parallel, AnExceptionReachesTheCaller) {
     EXPECT_THROW(parallelFor(100, 1, 3,
                              [](std::size_t begin, std::size_t) {

@@ -1,0 +1,33 @@
+// Memory that is zero until it is written to.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace haustra {
+
+/// `size` numbers, all 0. Of a large array only the pages that are touched are ever held, so that
+/// one of which little is used costs little: a vector of zeros writes all of them.
+template <class T>
+class ZeroedArray {
+    static_assert(std::is_arithmetic_v<T>);
+
+public:
+    explicit ZeroedArray(std::size_t size)
+        : values_(static_cast<T*>(std::calloc(size > 0 ? size : 1, sizeof(T)))) {
+        if (!values_) throw std::bad_alloc();
+    }
+    T& operator[](std::size_t n) { return values_.get()[n]; }
+    const T& operator[](std::size_t n) const { return values_.get()[n]; }
+
+private:
+    struct Free {
+        void operator()(T* values) const { std::free(values); }
+    };
+    std::unique_ptr<T[], Free> values_;
+};
+
+}  // namespace haustra
