@@ -13,7 +13,7 @@ namespace haustra::tests {
 inline constexpr double lumenMm = 20.0;  // radius of a ball of gas
 
 struct Bump {
-    glm::dvec3 centreMm;  ///< of a ball of tissue
+    glm::dvec3 centerMm;  ///< of a ball of tissue
     double radiusMm;
 };
 
@@ -23,7 +23,7 @@ inline const std::vector<Bump> bumps{{{0, 0, 18.5}, 4.0}, {{-18.0, 0, -2}, 3.2}}
 inline double wallMm(glm::dvec3 p, const std::vector<Bump>& onIt) {
     double d = glm::length(p) - lumenMm;
     for (const Bump& bump : onIt) {
-        const double other = bump.radiusMm - glm::distance(p, bump.centreMm);
+        const double other = bump.radiusMm - glm::distance(p, bump.centerMm);
         const double h = std::max(0.0, 1.0 - std::abs(d - other) / 1.0);
         d = std::max(d, other) + 0.25 * h * h;
     }

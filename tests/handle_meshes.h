@@ -56,16 +56,16 @@ public:
                 squares_.erase({face, i + apart + a, j + b});
             }
         }
-        const glm::dvec3 start = centreOf(from), end = centreOf(to);
+        const glm::dvec3 start = centerOf(from), end = centerOf(to);
         const double span = 0.5 * glm::distance(start, end);
         const glm::dvec3 middle = 0.5 * (start + end), across = glm::normalize(end - start);
         const glm::dvec3 up = (outside ? 1.0 : -1.0) * glm::normalize(middle);
         const glm::dvec3 aside = glm::cross(across, up);
-        const auto byAngle = [&](std::vector<int> rim, const glm::dvec3& centre,
+        const auto byAngle = [&](std::vector<int> rim, const glm::dvec3& center,
                                  const glm::dvec3& axis) {
             std::sort(rim.begin(), rim.end(), [&](int p, int q) {
                 const auto angle = [&](int v) {
-                    const glm::dvec3 d = mesh_.vertices[v] - centre;
+                    const glm::dvec3 d = mesh_.vertices[v] - center;
                     return std::atan2(glm::dot(d, aside), glm::dot(d, axis));
                 };
                 return angle(p) < angle(q);
@@ -146,11 +146,11 @@ private:
         return rim;
     }
 
-    glm::dvec3 centreOf(const std::vector<int>& rim) const {
-        glm::dvec3 centre(0.0);
+    glm::dvec3 centerOf(const std::vector<int>& rim) const {
+        glm::dvec3 center(0.0);
         for (const int v : rim)
-            centre += mesh_.vertices[v] / double(rim.size());
-        return centre;
+            center += mesh_.vertices[v] / double(rim.size());
+        return center;
     }
 
     double radiusMm_;

@@ -37,10 +37,10 @@ inline void fillTube(Volume<std::uint8_t>& mask, const std::vector<glm::dvec3>& 
     const Grid& grid = mask.grid();
     const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     for (const glm::dvec3& p : points) {
-        const glm::ivec3 centre(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)));
+        const glm::ivec3 center(glm::dvec3(voxelFromPatient * glm::dvec4(p, 1.0)));
         const glm::ivec3 reach = glm::ivec3(radiusMm / grid.spacingMm()) + 2;
-        const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0));
-        const glm::ivec3 hi = glm::min(centre + reach, grid.size - 1);
+        const glm::ivec3 lo = glm::max(center - reach, glm::ivec3(0));
+        const glm::ivec3 hi = glm::min(center + reach, grid.size - 1);
         for (int k = lo.z; k <= hi.z; ++k) {
             for (int j = lo.y; j <= hi.y; ++j) {
                 for (int i = lo.x; i <= hi.x; ++i) {

@@ -57,7 +57,7 @@ std::string candidateTable(const std::vector<Candidate>& candidates) {
         text += first ? "\n[" : ",\n[";
         first = false;
         for (const double value :
-             {lesion.centreMm.x, lesion.centreMm.y, lesion.centreMm.z, lesion.diameter.mm,
+             {lesion.centerMm.x, lesion.centerMm.y, lesion.centerMm.z, lesion.diameter.mm,
               lesion.areaMm2, double(lesion.patch.by), double(candidate.levelOf)})
             text += exact(value) + ',';
         for (const float value : candidate.features)
@@ -79,7 +79,7 @@ Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const st
                 throw std::invalid_argument("a row has another length");
             Candidate candidate;
             Lesion& lesion = candidate.lesion;
-            lesion.centreMm = {row[0].get<double>(), row[1].get<double>(), row[2].get<double>()};
+            lesion.centerMm = {row[0].get<double>(), row[1].get<double>(), row[2].get<double>()};
             lesion.diameter.mm = row[3], lesion.areaMm2 = row[4];
             lesion.patch.by = generatorOf(row[5]);
             candidate.levelOf = levelOf(row[6], candidates, lesion.patch.by);

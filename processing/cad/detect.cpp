@@ -41,7 +41,7 @@ Finding findingOf(const PreparedColon& colon, const std::vector<SegmentStart>& s
                   SampleNumbers& numbers) {
     const Lesion& lesion = candidate.lesion;
     Finding finding;
-    finding.positionMm = lesion.centreMm;
+    finding.positionMm = lesion.centerMm;
     finding.diameterMm = lesion.diameter.mm;
     finding.score = candidate.probability;
     finding.wallMm = lesion.topMm;
@@ -214,14 +214,14 @@ std::vector<double> residueLikePolyps(const std::vector<Candidate>& residue,
                                       const AlongColon& alongColon) {
     std::vector<PlaceWitness> witnesses;
     for (const Candidate& each : residue)
-        witnesses.push_back({each.lesion.centreMm, each.lesion.diameter.mm, each.lesion.areaMm2,
+        witnesses.push_back({each.lesion.centerMm, each.lesion.diameter.mm, each.lesion.areaMm2,
                              model.probability(each.features)});
     std::vector<double> arcs;
     for (const WitnessedPlace& place : placesOf(witnesses)) {
         const PlaceWitness& best = witnesses[place.best];
         const bool found = std::ranges::any_of(findings, [&](const Finding& finding) {
             return finding.kind != annularKind &&
-                   isSamePlace(finding.positionMm, finding.diameterMm, best.centreMm,
+                   isSamePlace(finding.positionMm, finding.diameterMm, best.centerMm,
                                best.diameterMm);
         });
         if (best.probability >= model.operatingPoint && !found)
@@ -334,7 +334,7 @@ void keepPlaces(std::vector<Candidate>& candidates, const OfCandidate& ofCandida
                 const OfPlace& ofPlace) {
     std::vector<PlaceWitness> witnesses;
     for (const Candidate& candidate : candidates)
-        witnesses.push_back({candidate.lesion.centreMm, candidate.lesion.diameter.mm,
+        witnesses.push_back({candidate.lesion.centerMm, candidate.lesion.diameter.mm,
                              candidate.lesion.areaMm2, ofCandidate(candidate.features),
                              candidate.levelOf});
     std::vector<Candidate> kept;

@@ -87,7 +87,7 @@ EvaluatedCase evaluateCase(std::string name, std::string group,
     EvaluatedCase result{std::move(name), std::move(group), truth, {}};
     std::vector<glm::dvec3> places;
     for (const Candidate& candidate : weighed)
-        places.push_back(candidate.lesion.centreMm);
+        places.push_back(candidate.lesion.centerMm);
     const std::vector<int> meant = matched(places, truth);
     for (std::size_t n = 0; n < weighed.size(); ++n) {
         const Candidate& candidate = weighed[n];
@@ -97,7 +97,7 @@ EvaluatedCase evaluateCase(std::string name, std::string group,
                                 ? "fold"
                                 : "wall";
         result.places.push_back({candidate.probability, candidate.lesion.diameter.mm, meant[n],
-                                 meant[n] < 0 ? looks : "", candidate.lesion.centreMm});
+                                 meant[n] < 0 ? looks : "", candidate.lesion.centerMm});
     }
     return result;
 }
@@ -198,7 +198,7 @@ std::vector<Mistake> falseFindings(const std::vector<const EvaluatedCase*>& case
         const std::size_t first = wrong.size();
         for (const ToldPlace& place : each->places)
             if (place.score >= operatingPoint && blamed(*each, place))
-                wrong.push_back({each->name, place.centreMm, place.diameterMm,
+                wrong.push_back({each->name, place.centerMm, place.diameterMm,
                                  falseKind(*each, place), place.score});
         sortFrom(wrong, first);
     }

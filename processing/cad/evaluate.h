@@ -17,7 +17,7 @@ struct ToldPlace {
     double diameterMm = 0.0;
     int lesion = -1;        ///< of the case's truth; −1: none
     std::string looksLike;  ///< where it is no lesion: "fold", "wall", "under fluid"
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
 };
 
 struct EvaluatedCase {

@@ -144,7 +144,7 @@ std::optional<TriMesh> closeBody(const SpannedPatch& spanned, Lesion& lesion) {
     const double length = glm::length(normal);
     if (!(length > 0.0)) return {};
     lesion.axis = normal / length;
-    lesion.centreMm = origin + moment / lesion.volumeMm3;
+    lesion.centerMm = origin + moment / lesion.volumeMm3;
     return body;
 }
 
@@ -289,7 +289,7 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const G
     Lesion lesion;
     const auto body = closeBody(spanned, lesion);
     if (!body) return {};
-    if (!isAmong(body->vertices, lesion.centreMm)) lesion.centreMm = middleOf(wall, patch.samples);
+    if (!isAmong(body->vertices, lesion.centerMm)) lesion.centerMm = middleOf(wall, patch.samples);
     measureAbove(spanned, patch.samples, lesion);
     lesion.diameter = diameterOf(wall, patch.samples);
     lesion.widthMm = widthAcross(wall, patch.samples, lesion);
@@ -319,8 +319,8 @@ std::set<std::size_t> voxelsBehind(const WallEvidence& evidence,
             if (!grid.contains(voxel)) continue;
             const glm::dvec3 apart = 1.0 - glm::abs(at - glm::dvec3(voxel));
             const double share = apart.x * apart.y * apart.z;
-            const glm::dvec3 centre = grid.patientFromVoxelPoint(glm::dvec3(voxel));
-            if (glm::dot(centre - wall, intoWall) < 0.0 || share <= greatest) continue;
+            const glm::dvec3 center = grid.patientFromVoxelPoint(glm::dvec3(voxel));
+            if (glm::dot(center - wall, intoWall) < 0.0 || share <= greatest) continue;
             greatest = share, most = grid.index(voxel);
         }
         if (greatest > 0.0) voxels.insert(most);

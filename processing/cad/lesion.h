@@ -19,7 +19,7 @@ struct Lesion {
     Patch patch;
     /// Of its volume; of the patch, by area, where parts above and beneath the base cancel so far
     /// that its volume's would lie beyond the box around the body.
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
     glm::dvec3 topMm{0.0};     ///< the sample farthest above the base
     glm::dvec3 axis{0, 0, 1};  ///< unit, from the base into the lumen
     /// Of the patch and of what rises around it up to the foot; of a head on a stalk, the patch.

@@ -124,11 +124,11 @@ constexpr double farthestGradientMm = 16.0;
 void describeGradients(const WallEvidence& evidence, const Lesion& lesion, Named& put) {
     const double radius = std::min(0.6 * lesion.diameter.mm + 1.0, farthestGradientMm);
     // At the centre; and the greatest of there, half way to the top, and as far beyond it.
-    const double atCentre = gradientConcentration(*evidence.smooth, lesion.centreMm, radius);
-    put("gradient_concentration", atCentre);
-    double most = atCentre;
+    const double atCenter = gradientConcentration(*evidence.smooth, lesion.centerMm, radius);
+    put("gradient_concentration", atCenter);
+    double most = atCenter;
     for (const double way : {0.5, 1.5}) {
-        const glm::dvec3 place = glm::mix(lesion.topMm, lesion.centreMm, way);
+        const glm::dvec3 place = glm::mix(lesion.topMm, lesion.centerMm, way);
         most = std::max(most, gradientConcentration(*evidence.smooth, place, radius));
     }
     put("gradient_concentration_max", most);
@@ -286,7 +286,7 @@ void describeSurroundings(const PreparedColon& colon, const WallEvidence& eviden
     if (!colon.centerline.points.empty()) {
         const WallPlace along = evidence.alongColon->at(lesion.topMm);
         describeRegion(colon, along.arcMm, put);
-        const glm::dvec3 way = along.cameraMm - lesion.centreMm;
+        const glm::dvec3 way = along.cameraMm - lesion.centerMm;
         const double length = glm::length(way);
         put("toward_axis", length > 0.0 ? glm::dot(way, lesion.axis) / length : 0.0);
     }

@@ -24,7 +24,7 @@ std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses) {
         const PlaceWitness& witness = witnesses[n];
         auto told = std::find_if(places.begin(), places.end(), [&](const WitnessedPlace& place) {
             const PlaceWitness& best = witnesses[place.best];
-            return isSamePlace(best.centreMm, best.diameterMm, witness.centreMm,
+            return isSamePlace(best.centerMm, best.diameterMm, witness.centerMm,
                                witness.diameterMm);
         });
         if (told == places.end()) {

@@ -13,7 +13,7 @@ namespace haustra::cad {
 /// What a place is told by: a candidate's centre, its diameter, its area and how probable it is by
 /// itself.
 struct PlaceWitness {
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
     double diameterMm = 0.0, areaMm2 = 0.0, probability = 0.0;
     /// Of a patch at another level (otherLevels): the number of the witness whose patch that is.
     std::int32_t levelOf = -1;

@@ -177,8 +177,8 @@ std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
     std::vector<glm::dvec3> places;
     std::vector<Example> examples;
     for (const Candidate& candidate : candidates) {
-        places.push_back(candidate.lesion.centreMm);
-        examples.push_back({candidate.features, candidate.lesion.centreMm,
+        places.push_back(candidate.lesion.centerMm);
+        examples.push_back({candidate.features, candidate.lesion.centerMm,
                             candidate.lesion.diameter.mm, candidate.lesion.areaMm2});
         examples.back().levelOf = candidate.levelOf;
     }

@@ -51,8 +51,8 @@ double TrueLesion::reachMm() const {
 }
 
 double TrueLesion::distanceMm(glm::dvec3 placeMm) const {
-    const double centre = glm::distance(placeMm, positionMm);
-    return kind == "pedunculated" ? centre : std::min(centre, glm::distance(placeMm, wallMm));
+    const double center = glm::distance(placeMm, positionMm);
+    return kind == "pedunculated" ? center : std::min(center, glm::distance(placeMm, wallMm));
 }
 
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place) {

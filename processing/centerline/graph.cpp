@@ -286,7 +286,7 @@ void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, 
     const glm::dvec3 spacing = graph.spacingMm;
     for (const std::int32_t node : route) {
         marked[std::size_t(node)] = true;
-        const glm::ivec3 centre = graph.voxelOf(node);
+        const glm::ivec3 center = graph.voxelOf(node);
         const double radiusMm = part * double(graph.nodes[std::size_t(node)].radiusMm) + marginMm;
         if (!std::isfinite(radiusMm)) continue;
         const glm::ivec3 reach = glm::ivec3(radiusMm / (2.0 * spacing)) + 1;
@@ -295,7 +295,7 @@ void markAlong(const BlockGraph& graph, const std::vector<std::int32_t>& route, 
         const glm::ivec3 hi = glm::min(block + reach, graph.blocks - 1);
         visitBox(lo, hi, [&](glm::ivec3 near) {
             graph.visitNodesOf(near, [&](std::int32_t other) {
-                const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - centre);
+                const glm::dvec3 away = spacing * glm::dvec3(graph.voxelOf(other) - center);
                 if (glm::dot(away, away) <= radiusMm * radiusMm) marked[std::size_t(other)] = true;
             });
         });

@@ -100,7 +100,7 @@ Result<TracedCenterline> traceCenterline(const Volume<std::uint8_t>& labels,
     progress(0.6);
     const auto curveAlong = [&](const std::vector<std::int32_t>& route, bool keepFirst,
                                 bool keepLast) {
-        std::vector<glm::ivec3> path = refineToVoxels(graph, distanceMm, centreRoute(graph, route));
+        std::vector<glm::ivec3> path = refineToVoxels(graph, distanceMm, centerRoute(graph, route));
         trimEnds(path, distanceMm, !keepFirst, !keepLast);
         if (path.size() < 2) return std::vector<glm::dvec3>();
         std::vector<glm::dvec3> smooth = smoothInsideLumen(path, labels, distanceMm);

@@ -26,9 +26,9 @@ public:
     Corridor(const BlockGraph& graph, const std::vector<std::int32_t>& route, int reach)
         : graph_(graph), numberOf_(graph.nodes.size(), -1) {
         for (const std::int32_t node : route) {
-            const glm::ivec3 centre = graph.blockOf(node);
-            const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0));
-            const glm::ivec3 hi = glm::min(centre + reach, graph.blocks - 1);
+            const glm::ivec3 center = graph.blockOf(node);
+            const glm::ivec3 lo = glm::max(center - reach, glm::ivec3(0));
+            const glm::ivec3 hi = glm::min(center + reach, graph.blocks - 1);
             visitBox(lo, hi, [&](glm::ivec3 block) {
                 graph.visitNodesOf(block, [&](std::int32_t near) { add(near); });
             });
@@ -198,7 +198,7 @@ std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target) {
     return path;
 }
 
-std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
+std::vector<std::int32_t> centerRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route) {
     std::vector<bool> within(graph.nodes.size(), false);
     markAlong(graph, route, innerPart, 0.0, within);

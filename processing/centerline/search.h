@@ -47,7 +47,7 @@ std::vector<std::int32_t> pathTo(const PathTree& tree, std::int32_t target);
 /// The path that minimises ∫ ds / distance from the boundary, from the route's first node to its
 /// last, within the inner part of the balls inscribed along the route, where no leak leads out of
 /// the colon. Unlike the tree's path it does not swing into every haustrum.
-std::vector<std::int32_t> centreRoute(const BlockGraph& graph,
+std::vector<std::int32_t> centerRoute(const BlockGraph& graph,
                                       const std::vector<std::int32_t>& route);
 
 /// The exact minimum of the same cost over single voxels, from the deepest voxel of

@@ -223,15 +223,15 @@ private:
         }
         glm::ivec3 inside = voxel, outside = voxel;
         (insideHere ? outside : inside)[axis] += 1;
-        const std::int32_t centre = -1 - std::int32_t(surface.edgeVertices.size());
+        const std::int32_t center = -1 - std::int32_t(surface.edgeVertices.size());
         surface.edgeVertices.push_back(dual_.crossings.between(inside, outside).onEdge);
         for (int n = 0; n < 4; ++n) {
             std::int32_t from = corners[n];
             if (const std::int32_t middle = polygon.afterwards[n]; middle >= 0) {
-                add(centre, from, middle);
+                add(center, from, middle);
                 from = middle;
             }
-            add(centre, from, corners[(n + 1) % 4]);
+            add(center, from, corners[(n + 1) % 4]);
         }
     }
 

@@ -36,7 +36,7 @@ CutBall ballFrom(const Json& json) {
 std::string editsJson(const ColonEdits& edits) {
     Json cuts = Json::array(), joins = Json::array();
     for (const CutBall& cut : edits.cuts)
-        cuts.push_back({{"center_mm", point(cut.centreMm)}, {"radius_mm", cut.radiusMm}});
+        cuts.push_back({{"center_mm", point(cut.centerMm)}, {"radius_mm", cut.radiusMm}});
     for (const auto& [a, b] : edits.joins)
         joins.push_back({point(a), point(b)});
     return Json{{"seeds_mm", points(edits.seedsMm)},

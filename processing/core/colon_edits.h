@@ -13,7 +13,7 @@ namespace haustra {
 
 /// A ball in which there is no lumen.
 struct CutBall {
-    glm::dvec3 centreMm{0.0};  ///< patient, LPS
+    glm::dvec3 centerMm{0.0};  ///< patient, LPS
     double radiusMm = 3.0;
     bool operator==(const CutBall&) const = default;
 };

@@ -71,7 +71,7 @@ std::vector<std::string> piecesPassedBy(const Centerline& path,
             // The path keeps to the middle of what it passes.
             double nearest = 1e30;
             for (const CenterlinePoint& p : path.points)
-                nearest = std::min(nearest, glm::distance(p.positionMm, pieces[n].centreMm));
+                nearest = std::min(nearest, glm::distance(p.positionMm, pieces[n].centerMm));
             missed = nearest > pieces[n].radiusMm + 5.0;
         }
         if (missed) {
@@ -80,7 +80,7 @@ std::vector<std::string> piecesPassedBy(const Centerline& path,
             const ColonPiece& last = pieces[n - 1];
             lines.push_back(
                 printed("about %.0f mm of the colon have no centerline, up to the %s at %s",
-                        missedMm, toString(last.part), placeText(last.centreMm).c_str()));
+                        missedMm, toString(last.part), placeText(last.centerMm).c_str()));
             missedMm = 0.0;
         }
     }
@@ -112,7 +112,7 @@ namespace {
 
 Json jsonOf(const ColonPiece& piece) {
     return {{"part", toString(piece.part)},
-            {"center_mm", place(piece.centreMm)},
+            {"center_mm", place(piece.centerMm)},
             {"radius_mm", rounded(piece.radiusMm)},
             {"length_mm", rounded(piece.lengthMm)},
             {"gas_ml", rounded(piece.gasMl)},
@@ -141,7 +141,7 @@ const char* nameOf(BodyContent content) {
 }
 
 Json jsonOf(const LeftOutBody& body) {
-    return {{"center_mm", place(body.centreMm)},
+    return {{"center_mm", place(body.centerMm)},
             {"volume_ml", rounded(body.volumeMl)},
             {"content", nameOf(body.content)},
             {"nearest", toString(body.nearest)},
@@ -259,9 +259,9 @@ Result<std::vector<ColonPiece>> piecesOfQuality(const std::string& text) {
                 if (read.part == ColonPart::cecum) throw std::invalid_argument("no part: " + part);
                 read.part = ColonPart(int(read.part) + 1);
             }
-            const Json& centre = piece.at("center_mm");
-            read.centreMm = {centre.at(0).get<double>(), centre.at(1).get<double>(),
-                             centre.at(2).get<double>()};
+            const Json& center = piece.at("center_mm");
+            read.centerMm = {center.at(0).get<double>(), center.at(1).get<double>(),
+                             center.at(2).get<double>()};
             read.radiusMm = piece.at("radius_mm"), read.lengthMm = piece.at("length_mm");
             pieces.push_back(read);
         }

@@ -40,7 +40,7 @@ const char* toString(JunctionKind kind);
 
 struct ColonPiece {
     ColonPart part = ColonPart::rectum;
-    glm::dvec3 centreMm{0.0};  ///< patient, LPS: middle of the largest ball inside
+    glm::dvec3 centerMm{0.0};  ///< patient, LPS: middle of the largest ball inside
     double radiusMm = 0.0;     ///< of that ball
     double lengthMm = 0.0;     ///< of the way through it, from mouth to mouth by that middle
     double gasMl = 0.0, taggedMl = 0.0, untaggedMl = 0.0;
@@ -63,7 +63,7 @@ const char* toString(BodyContent content);  ///< "gas", "tagged material", "flui
 
 /// Bowel, or what may be, that is not part of the colon that was found.
 struct LeftOutBody {
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
     double volumeMl = 0.0;
     BodyContent content = BodyContent::gas;
     ColonPart nearest = ColonPart::rectum;

@@ -34,7 +34,7 @@ std::vector<SegmentStart> segmentsAlong(const Centerline& centerline,
     if (centerline.points.empty()) return {};
     std::vector<double> arcsMm;
     for (const ColonPiece& piece : pieces)
-        arcsMm.push_back(nearestArc(centerline, piece.centreMm));
+        arcsMm.push_back(nearestArc(centerline, piece.centerMm));
     std::vector<SegmentStart> starts;
     double lastMm = 0.0;
     for (const std::size_t n : longestInOrder(arcsMm)) {

@@ -3,7 +3,7 @@
 namespace haustra {
 namespace {
 
-constexpr Neighbourhood centre = 1u << 13;
+constexpr Neighbourhood center = 1u << 13;
 constexpr Neighbourhood all = (1u << 27) - 1u;
 
 /// The voxels of the 3 × 3 × 3 for which `holds(dx, dy, dz)`.
@@ -23,8 +23,8 @@ constexpr Neighbourhood six =
     voxelsWhere([](int x, int y, int z) { return square(x) + square(y) + square(z) == 1; });
 constexpr Neighbourhood eighteen =
     voxelsWhere([](int x, int y, int z) { return square(x) + square(y) + square(z) <= 2; }) &
-    ~centre;
-constexpr Neighbourhood twentySix = all & ~centre;
+    ~center;
+constexpr Neighbourhood twentySix = all & ~center;
 
 // What a step along x or y may leave from; a step along z leaves by the ends of the word.
 constexpr Neighbourhood notLastX = voxelsWhere([](int x, int, int) { return x < 1; });

@@ -16,17 +16,17 @@ struct Moments {
 Moments momentsOf(std::span<const VoxelRun> voxels) {
     double total = 0.0;
     glm::dvec3 sum(0.0);
-    const auto centre = [](const VoxelRun& run) {
+    const auto center = [](const VoxelRun& run) {
         return glm::dvec3(run.first) + glm::dvec3(0.5 * (run.count - 1), 0.0, 0.0);
     };
     for (const VoxelRun& run : voxels) {
         total += run.count;
-        sum += double(run.count) * centre(run);
+        sum += double(run.count) * center(run);
     }
     Moments moments{sum / total, glm::dmat3(1.0 / 12.0)};
     for (const VoxelRun& run : voxels) {
         const double weight = run.count / total;
-        const glm::dvec3 off = centre(run) - moments.mean;
+        const glm::dvec3 off = center(run) - moments.mean;
         moments.covariance += weight * glm::outerProduct(off, off);
         moments.covariance[0][0] += weight * (double(run.count) * run.count - 1.0) / 12.0;
     }
@@ -70,7 +70,7 @@ Ellipsoid ellipsoidOf(std::span<const VoxelRun> voxels, const Grid& grid) {
     glm::dmat3 spread = toMm * moments.covariance * glm::transpose(toMm);
     const glm::dmat3 axes = diagonalise(spread);
     Ellipsoid ellipsoid;
-    ellipsoid.centreMm = grid.patientFromVoxelPoint(moments.mean);
+    ellipsoid.centerMm = grid.patientFromVoxelPoint(moments.mean);
     for (int n = 0; n < 3; ++n)
         ellipsoid.halfAxesMm[std::size_t(n)] =
             std::sqrt(5.0 * std::max(spread[n][n], 0.0)) * pointedUp(axes[n]);

@@ -12,7 +12,7 @@
 namespace haustra {
 
 struct Ellipsoid {
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
     std::array<glm::dvec3, 3> halfAxesMm{};  ///< orthogonal, the longest first
 };
 

@@ -176,7 +176,7 @@ private:
         if (options_.field) {
             field = *options_.field;
         } else {
-            field.centre = 0.5 * (glm::dvec2(options_.pictureSize) - 1.0);
+            field.center = 0.5 * (glm::dvec2(options_.pictureSize) - 1.0);
             field.radii = glm::dvec2(0.5 * glm::length(glm::dvec2(options_.pictureSize)));
         }
         // A model of one coefficient is its own nominal projection, and so is a polynomial of tan
@@ -204,7 +204,7 @@ private:
         }
         const double atEdge = radiusOf(nominal, std::min(edge, 0.999 * largestAngle(nominal)));
         lens.mu = field.radii.x / atEdge, lens.mv = field.radii.y / atEdge;
-        lens.u0 = field.centre.x, lens.v0 = field.centre.y;
+        lens.u0 = field.center.x, lens.v0 = field.center.y;
         return lens;
     }
 
@@ -378,7 +378,7 @@ private:
     // ---- discs
 
     /// The centre of a disc's picture, as a polygon's.
-    glm::dvec2 centreOfDisc(std::size_t v, glm::dvec2 placeMm, double radiusMm) const {
+    glm::dvec2 centerOfDisc(std::size_t v, glm::dvec2 placeMm, double radiusMm) const {
         constexpr int corners = 48;
         const glm::dvec2 middle = shown(v, placeMm);
         double area = 0.0;
@@ -428,7 +428,7 @@ private:
                 for (std::size_t n = 0; n < views_[v].pixels.size(); ++n) {
                     const glm::dvec2 place = views_[v].placesMm[n];
                     const glm::dvec2 bias =
-                        centreOfDisc(v, place, result.dotRadiusMm) - shown(v, place);
+                        centerOfDisc(v, place, result.dotRadiusMm) - shown(v, place);
                     const glm::dvec2 pixel = found[v][n] - bias;
                     result.largestBiasPixels =
                         std::max(result.largestBiasPixels, glm::length(bias));

@@ -17,7 +17,7 @@ struct Colonoscope {
     glm::ivec2 pictureSize{0};  ///< pixels
     /// The open part of the picture: an ellipse with its axes along the picture's, cut by the
     /// picture's border, which makes the octagon of a real screen.
-    glm::dvec2 openCentre{0.0}, openRadii{0.0};  ///< pixels
+    glm::dvec2 openCenter{0.0}, openRadii{0.0};  ///< pixels
     double fieldDegrees = 0.0;                 ///< whole angle; rays beyond half of it show nothing
     double nearestMm = 0.0, farthestMm = 0.0;  ///< depth of field, from the lens along the ray
     double tipRadiusMm = 0.0;                  ///< the lens stays at least this far from the wall

@@ -148,9 +148,9 @@ PixelBox Eyepiece::boxOf(const std::array<glm::vec3, 3>& corners) const {
     const glm::vec2 toward = aside > 0.0f ? glm::vec2(middle) / aside : glm::vec2(1.0f, 0.0f);
     // As pixelOf does, but for the question whether the lens reaches so far, which it does.
     const glm::dvec3 d(glm::dvec2(toward) * std::sin(double(end)), std::cos(double(end)));
-    const double pixelsPerMm[2] = {lens_.mu, lens_.mv}, centre[2] = {lens_.u0, lens_.v0};
+    const double pixelsPerMm[2] = {lens_.mu, lens_.mv}, center[2] = {lens_.u0, lens_.v0};
     glm::dvec2 pixel;
-    projectTo(lens_.projection, lens_.k.data(), pixelsPerMm, centre, lens_.decentring.data(), d.x,
+    projectTo(lens_.projection, lens_.k.data(), pixelsPerMm, center, lens_.decentring.data(), d.x,
               d.y, d.z, &pixel.x);
     const float reach = glm::degrees(end + spread) + 1.0f;
     const float pixels = spread * mostScale_[std::min(std::size_t(reach), mostScale_.size() - 1)];

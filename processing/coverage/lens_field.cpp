@@ -16,7 +16,7 @@ double fieldWithin(const FisheyeLens& lens, const FieldEllipse& open, glm::ivec2
     for (int n = 0; n < samples; ++n) {
         const double angle = 2.0 * std::numbers::pi * n / samples;
         const glm::dvec2 edge =
-            open.centre + open.radii * glm::dvec2(std::cos(angle), std::sin(angle));
+            open.center + open.radii * glm::dvec2(std::cos(angle), std::sin(angle));
         const auto direction =
             directionOf(lens, glm::clamp(edge, glm::dvec2(0.0), glm::dvec2(pictureSize - 1)));
         // Past the edge of what the lens shows.

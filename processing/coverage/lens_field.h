@@ -9,7 +9,7 @@ namespace haustra::coverage {
 
 /// The open part of pictures of one endoscope: an ellipse with its axes along the pictures'.
 struct FieldEllipse {
-    glm::dvec2 centre{0.0}, radii{0.0};  ///< pixels
+    glm::dvec2 center{0.0}, radii{0.0};  ///< pixels
 };
 
 /// The ellipse about the picture's middle through its corners: a picture that is open throughout.

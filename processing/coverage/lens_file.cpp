@@ -106,7 +106,7 @@ std::string lensText(const Colonoscope& scope, const LensModel* model,
                       {"v0", lens.v0},
                       {"decentring", lens.decentring},
                       {"picture_size", {scope.pictureSize.x, scope.pictureSize.y}},
-                      {"open_centre", {scope.openCentre.x, scope.openCentre.y}},
+                      {"open_centre", {scope.openCenter.x, scope.openCenter.y}},
                       {"open_radii", {scope.openRadii.x, scope.openRadii.y}},
                       {"field_degrees", scope.fieldDegrees},
                       {"depth_of_field_mm", {scope.nearestMm, scope.farthestMm}},
@@ -139,7 +139,7 @@ Result<Colonoscope> colonoscopeOfText(std::string_view text, const std::string& 
     if (fields.has("decentring")) fields.numbers("decentring", 2, scope.lens.decentring.data());
     glm::dvec2 size(1.0), depth(0.0);
     fields.numbers("picture_size", 2, &size.x);
-    fields.numbers("open_centre", 2, &scope.openCentre.x);
+    fields.numbers("open_centre", 2, &scope.openCenter.x);
     fields.numbers("open_radii", 2, &scope.openRadii.x);
     fields.numbers("field_degrees", 1, &scope.fieldDegrees);
     fields.numbers("depth_of_field_mm", 2, &depth.x);

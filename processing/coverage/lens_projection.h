@@ -36,7 +36,7 @@ T raisedPerAside(Projection projection, const T& x, const T& y, const T& z) {
 /// The pixel of equations 2.6 to 2.8 with FisheyeLens' decentring; `k` has five numbers, the others
 /// two. Says nothing of whether the direction is seen.
 template <class T>
-void projectTo(Projection projection, const T* k, const T* pixelsPerMm, const T* centre,
+void projectTo(Projection projection, const T* k, const T* pixelsPerMm, const T* center,
                const T* decentring, const T& x, const T& y, const T& z, T* pixel) {
     const T raised = raisedPerAside(projection, x, y, z);
     const T a = x * raised, b = y * raised, t = a * a + b * b;
@@ -44,8 +44,8 @@ void projectTo(Projection projection, const T* k, const T* pixelsPerMm, const T*
     const T &p = decentring[0], &q = decentring[1];
     const T sideways = T(2.0) * p * a * b + q * (t + T(2.0) * a * a),
             upright = p * (t + T(2.0) * b * b) + T(2.0) * q * a * b;
-    pixel[0] = pixelsPerMm[0] * (a * radial + k[0] * sideways) + centre[0];
-    pixel[1] = pixelsPerMm[1] * (b * radial + k[0] * upright) + centre[1];
+    pixel[0] = pixelsPerMm[0] * (a * radial + k[0] * sideways) + center[0];
+    pixel[1] = pixelsPerMm[1] * (b * radial + k[0] * upright) + center[1];
 }
 
 }  // namespace haustra::coverage

@@ -365,15 +365,15 @@ std::optional<FieldEllipse> ellipseThrough(const std::vector<glm::dvec2>& points
     const double a = fit.at<double>(0), b = fit.at<double>(1), c = fit.at<double>(2),
                  d = fit.at<double>(3);
     if (!(a > 0.0 && b > 0.0)) return std::nullopt;
-    const glm::dvec2 centre(-0.5 * c / a, -0.5 * d / b);
-    const double right = 1.0 + a * centre.x * centre.x + b * centre.y * centre.y;
-    return FieldEllipse{middle + size * centre,
+    const glm::dvec2 center(-0.5 * c / a, -0.5 * d / b);
+    const double right = 1.0 + a * center.x * center.x + b * center.y * center.y;
+    return FieldEllipse{middle + size * center,
                         size * glm::dvec2(std::sqrt(right / a), std::sqrt(right / b))};
 }
 
 /// How far a point lies from an ellipse, to first order, pixels.
 double distanceOf(const FieldEllipse& field, glm::dvec2 point) {
-    const glm::dvec2 in = (point - field.centre) / field.radii;
+    const glm::dvec2 in = (point - field.center) / field.radii;
     const double gradient = glm::length(in / field.radii);
     const double level = glm::length(in);
     return gradient > 0.0 ? std::abs(level - 1.0) * level / gradient : glm::length(field.radii);

@@ -123,7 +123,7 @@ Result<Colonoscope> lensOfOpenCvText(const std::string& text, const std::string&
     if (const auto sound = checkLens(scope.lens); !sound) return wrong(sound.error().message);
     scope.pictureSize = {int(*width), int(*height)};
     const FieldEllipse open = wholePicture(scope.pictureSize);
-    scope.openCentre = open.centre, scope.openRadii = open.radii;
+    scope.openCenter = open.center, scope.openRadii = open.radii;
     scope.fieldDegrees = fieldWithin(scope.lens, open, scope.pictureSize);
     return scope;
 } catch (const std::exception&) {

@@ -290,8 +290,8 @@ private:
         const Ellipsoid e = ellipsoidOf(finding.voxels, findings_.grid);
         const auto& [a, b, c] = e.halfAxesMm;
         out_.places(Type::RT_hasProperties, CODE_DCM_Outline, Type::GT3_Ellipsoid,
-                    {e.centreMm - a, e.centreMm + a, e.centreMm - b, e.centreMm + b, e.centreMm - c,
-                     e.centreMm + c});
+                    {e.centerMm - a, e.centerMm + a, e.centerMm - b, e.centerMm + b, e.centerMm - c,
+                     e.centerMm + c});
     }
 
     /// TID 4128, whose order is significant: site, distance from the anus, height, diameter. Of a

@@ -32,13 +32,13 @@ struct Plane {
 };
 
 std::optional<Plane> meanPlane(const std::vector<glm::dvec3>& polygon) {
-    glm::dvec3 centre(0.0), area(0.0);
+    glm::dvec3 center(0.0), area(0.0);
     for (const auto& p : polygon)
-        centre += p / double(polygon.size());
+        center += p / double(polygon.size());
     double around = 0.0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const glm::dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        area += 0.5 * glm::cross(a - centre, b - centre);
+        area += 0.5 * glm::cross(a - center, b - center);
         around += glm::distance(a, b);
     }
     const double size = glm::length(area);
@@ -46,7 +46,7 @@ std::optional<Plane> meanPlane(const std::vector<glm::dvec3>& polygon) {
     const glm::dvec3 normal = area / size;
     const glm::dvec3 other = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 u = glm::normalize(glm::cross(other, normal));
-    return Plane{centre, u, glm::cross(normal, u)};
+    return Plane{center, u, glm::cross(normal, u)};
 }
 
 double distanceToSegment(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
@@ -205,10 +205,10 @@ LoopDisc spanInSpace(const std::vector<glm::dvec3>& polygon) {
     LoopDisc disc;
     disc.corners = int(n);
     if (triples.size() + 2 != n) {  // a fan round the centre always closes it
-        glm::dvec3 centre(0.0);
+        glm::dvec3 center(0.0);
         for (const auto& p : polygon)
-            centre += p / double(n);
-        disc.interior.push_back(centre);
+            center += p / double(n);
+        disc.interior.push_back(center);
         for (std::size_t i = 0; i < n; ++i)
             disc.triangles.push_back({int(i), int((i + 1) % n), int(n)});
         return disc;

@@ -22,11 +22,11 @@ private:
         solids_.push_back(
             {low, high, std::move(distance), std::move(hu), -1e9, std::uint8_t(site)});
     }
-    void addEllipsoid(glm::dvec3 centre, glm::dvec3 semi,
+    void addEllipsoid(glm::dvec3 center, glm::dvec3 semi,
                       std::function<double(glm::dvec3, double)> hu) {
         add(
-            centre - semi - 2.0, centre + semi + 2.0,
-            [=](glm::dvec3 p) { return ellipsoid(p, centre, semi); }, std::move(hu));
+            center - semi - 2.0, center + semi + 2.0,
+            [=](glm::dvec3 p) { return ellipsoid(p, center, semi); }, std::move(hu));
     }
     void addCapsule(glm::dvec3 a, glm::dvec3 b, double r,
                     std::function<double(glm::dvec3, double)> hu) {
@@ -147,12 +147,12 @@ void Builder::addOrgans() {
     addEllipsoid({0, 2, 300}, {62, 12, 16}, tissue(38, 10, next(), 5));  // pancreas
     for (double side : {-1.0, 1.0}) {
         const std::uint64_t texture = next();
-        const glm::dvec3 centre{side * 66, 46, side < 0 ? 262.0 : 276.0};
+        const glm::dvec3 center{side * 66, 46, side < 0 ? 262.0 : 276.0};
         const auto kidney = [=](glm::dvec3 p) {
-            return std::max(ellipsoid(p, centre, {28, 25, 53}),
-                            -ellipsoid(p, centre - glm::dvec3(side * 20, 4, 0), {16, 12, 24}));
+            return std::max(ellipsoid(p, center, {28, 25, 53}),
+                            -ellipsoid(p, center - glm::dvec3(side * 20, 4, 0), {16, 12, 24}));
         };
-        add(centre - glm::dvec3(30, 27, 55), centre + glm::dvec3(30, 27, 55), kidney,
+        add(center - glm::dvec3(30, 27, 55), center + glm::dvec3(30, 27, 55), kidney,
             tissue(34, 7, texture));
     }
     addCapsule({4, 16, -20}, {4, 12, 60}, 1.0, tissue(30, 0, next()));

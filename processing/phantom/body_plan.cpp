@@ -62,12 +62,12 @@ double BodyPlan::spineColumn(glm::dvec3 p) {
 
 double BodyPlan::iliacWing(glm::dvec3 p) {
     // A bent plate from the sacro-iliac joint to the front spine of the hip bone.
-    const glm::dvec3 centre{96, 20, 142};
+    const glm::dvec3 center{96, 20, 142};
     const glm::dvec3 along = glm::normalize(glm::dvec3(66, -112, 12));
     const glm::dvec3 up = glm::normalize(glm::dvec3(0.25, 0.02, 1.0));
     const glm::dvec3 normal = glm::normalize(glm::cross(along, up));
     const glm::dvec3 across = glm::cross(normal, along);
-    const glm::dvec3 q = glm::dvec3(std::abs(p.x), p.y, p.z) - centre;
+    const glm::dvec3 q = glm::dvec3(std::abs(p.x), p.y, p.z) - center;
     const double u = glm::dot(q, along), v = glm::dot(q, across);
     const double bend = 0.0022 * (u * u + 0.5 * v * v) - 4.0;
     const double w =

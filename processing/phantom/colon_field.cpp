@@ -17,7 +17,7 @@ ColonField::ColonField(const ColonShape& shape, const Grid& grid, int threads) :
     parallelFor(total, 512, threads, [&](std::size_t begin, std::size_t end) {
         ColonShape::Nearby nearby;
         for (std::size_t n = begin; n < end; ++n) {
-            shape.findNearby(centreOf(originOf(n)), halfDiagonalMm(), nearby);
+            shape.findNearby(centerOf(originOf(n)), halfDiagonalMm(), nearby);
             near[n] = !nearby.segments.empty();
         }
     });
@@ -35,16 +35,16 @@ ColonField::ColonField(const ColonShape& shape, const Grid& grid, int threads) :
     });
 }
 
-void ColonField::resample(const ColonShape& shape, glm::dvec3 centre, double radiusMm) {
+void ColonField::resample(const ColonShape& shape, glm::dvec3 center, double radiusMm) {
     ColonShape::Nearby nearby;
     for (Block& block : blocks_) {
-        if (glm::distance(centreOf(block.origin), centre) < radiusMm + halfDiagonalMm())
+        if (glm::distance(centerOf(block.origin), center) < radiusMm + halfDiagonalMm())
             sample(shape, nearby, block);
     }
 }
 
 void ColonField::sample(const ColonShape& shape, ColonShape::Nearby& nearby, Block& block) const {
-    shape.findNearby(centreOf(block.origin), halfDiagonalMm(), nearby);
+    shape.findNearby(centerOf(block.origin), halfDiagonalMm(), nearby);
     for (int v = 0; v < blockVoxels; ++v) {
         const glm::ivec3 voxel = block.origin + glm::ivec3(v % blockSize, v / blockSize % blockSize,
                                                            v / (blockSize * blockSize));

@@ -26,7 +26,7 @@ public:
     ColonField(const ColonShape& shape, const Grid& grid, int threads);
 
     /// Samples the shape anew in the blocks that a ball reaches.
-    void resample(const ColonShape& shape, glm::dvec3 centre, double radiusMm);
+    void resample(const ColonShape& shape, glm::dvec3 center, double radiusMm);
 
     const Grid& grid() const { return grid_; }
     int blockCount() const { return int(blocks_.size()); }
@@ -50,7 +50,7 @@ private:
         std::array<Sample, blockVoxels> samples;
     };
     double halfDiagonalMm() const { return 0.5 * blockSize * glm::length(grid_.spacingMm()); }
-    glm::dvec3 centreOf(glm::ivec3 blockOrigin) const {
+    glm::dvec3 centerOf(glm::ivec3 blockOrigin) const {
         return grid_.patientFromVoxelPoint(glm::dvec3(blockOrigin) + 0.5 * (blockSize - 1.0));
     }
     void sample(const ColonShape& shape, ColonShape::Nearby& nearby, Block& block) const;

@@ -233,7 +233,7 @@ public:
 
 private:
     int sampleOf(const ColonPiece& piece) const {
-        return course_.sampleNear(piece.centreMm, std::max(3.0, 0.5 * piece.radiusMm));
+        return course_.sampleNear(piece.centerMm, std::max(3.0, 0.5 * piece.radiusMm));
     }
 
     void scoreJunction(std::size_t n, std::vector<char>& crossed, ColonScore& score) const {
@@ -249,8 +249,8 @@ private:
             score.wrongSteps.push_back({kind, junction.placeMm, fromMm, toMm, false});
         };
         if (from < 0 || to < 0) return wrong(Kind::foreign);
-        const double wayMm = glm::distance(a.centreMm, junction.placeMm) +
-                             glm::distance(junction.placeMm, b.centreMm);
+        const double wayMm = glm::distance(a.centerMm, junction.placeMm) +
+                             glm::distance(junction.placeMm, b.centerMm);
         if (std::abs(fromMm - toMm) > 2.0 * wayMm + leapSlackMm) return wrong(Kind::leap);
         const double lo = std::min(fromMm, toMm), hi = std::max(fromMm, toMm);
         const auto& closures = course_.closures();

@@ -31,14 +31,14 @@ PathSample between(const PathSample& a, const PathSample& b, double t) {
 }  // namespace
 
 double Growth::distance(glm::dvec3 p) const {
-    const glm::dvec3 q = p - centre;
+    const glm::dvec3 q = p - center;
     const glm::dvec3 side = glm::cross(inward, tangent);
     const glm::dvec3 local{glm::dot(q, tangent), glm::dot(q, side), glm::dot(q, inward)};
     const double size = std::max({semiAxes.x, semiAxes.y, semiAxes.z});
     const double lumps = 0.07 * size * valueNoise(seed, p, 0.9 * size);
     double d = ellipsoid(local, glm::dvec3(0.0), semiAxes) + lumps;
     if (stalkRadiusMm > 0.0) {
-        const double stalk = capsule(p, root, centre, stalkRadiusMm);
+        const double stalk = capsule(p, root, center, stalkRadiusMm);
         d = -smoothMax(-d, -stalk, 1.0);
     }
     return d;
@@ -47,15 +47,15 @@ double Growth::distance(glm::dvec3 p) const {
 double Growth::reachMm() const {
     const double head =
         1.1 * std::max({semiAxes.x, semiAxes.y, semiAxes.z}) + std::max(1.0, footMm);
-    return stalkRadiusMm > 0.0 ? std::max(head, glm::distance(root, centre) + stalkRadiusMm + 1.0)
+    return stalkRadiusMm > 0.0 ? std::max(head, glm::distance(root, center) + stalkRadiusMm + 1.0)
                                : head;
 }
 
 double Diverticulum::distance(glm::dvec3 p) const {
     // The neck begins inside the lumen, so that no film is left across the mouth.
-    const glm::dvec3 within = mouth + (mouth - centre) * (1.0 / glm::distance(mouth, centre));
-    const double neck = capsule(p, within, centre, neckRadiusMm);
-    return -smoothMax(sacRadiusMm - glm::distance(p, centre), -neck, 0.6);
+    const glm::dvec3 within = mouth + (mouth - center) * (1.0 / glm::distance(mouth, center));
+    const double neck = capsule(p, within, center, neckRadiusMm);
+    return -smoothMax(sacRadiusMm - glm::distance(p, center), -neck, 0.6);
 }
 
 double Valve::slit(glm::dvec3 p) const {
@@ -164,7 +164,7 @@ double ColonShape::tube(glm::dvec3 p, const PathSample& s, double arcMm) const {
     return d;
 }
 
-void ColonShape::findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) const {
+void ColonShape::findNearby(glm::dvec3 center, double radiusMm, Nearby& nearby) const {
     nearby.segments.clear();
     nearby.growths.clear();
     nearby.diverticula.clear();
@@ -173,19 +173,19 @@ void ColonShape::findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) 
         // Beyond the nearest tube's reach, a neighbour matters as far as the septum does.
         const double reach =
             mostBulge * std::max(s.radiusMm, collapsedRadiusMm) + wallMm + reachMm + radiusMm + 1.0;
-        const glm::dvec3 v = s.position - centre;
+        const glm::dvec3 v = s.position - center;
         if (glm::dot(v, v) < reach * reach) nearby.segments.push_back(int(n));
     }
     for (std::size_t n = 0; n < growths_.size(); ++n) {
         const double reach = growths_[n].reachMm() + radiusMm + 3.0;
-        const glm::dvec3 v = growths_[n].centre - centre;
+        const glm::dvec3 v = growths_[n].center - center;
         if (glm::dot(v, v) < reach * reach) nearby.growths.push_back(int(n));
     }
     for (std::size_t n = 0; n < diverticula_.size(); ++n) {
         const Diverticulum& pouch = diverticula_[n];
         const double reach =
-            glm::distance(pouch.mouth, pouch.centre) + pouch.sacRadiusMm + reachMm + radiusMm + 3.0;
-        const glm::dvec3 v = pouch.centre - centre;
+            glm::distance(pouch.mouth, pouch.center) + pouch.sacRadiusMm + reachMm + radiusMm + 3.0;
+        const glm::dvec3 v = pouch.center - center;
         if (glm::dot(v, v) < reach * reach) nearby.diverticula.push_back(int(n));
     }
 }

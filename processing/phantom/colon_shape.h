@@ -23,7 +23,7 @@ struct Fold {
 struct Growth {
     enum class Kind { sessile, pedunculated, flat, hyperplastic, untaggedStool, taggedStool };
     Kind kind = Kind::sessile;
-    glm::dvec3 centre{0.0};       ///< of the head
+    glm::dvec3 center{0.0};       ///< of the head
     glm::dvec3 inward{0, 0, 1};   ///< unit, from the wall into the lumen
     glm::dvec3 root{0.0};         ///< its foot on the wall; of a stalk, a little beneath
     double rootDepthMm = 0.0;     ///< how far the root lies beneath the wall
@@ -36,7 +36,7 @@ struct Growth {
 
     /// Signed distance to its surface (first order).
     double distance(glm::dvec3 p) const;
-    /// No part lies farther than this from `centre`.
+    /// No part lies farther than this from `center`.
     double reachMm() const;
     bool stool() const { return kind == Kind::untaggedStool || kind == Kind::taggedStool; }
     bool polyp() const { return !stool() && kind != Kind::hyperplastic; }
@@ -45,7 +45,7 @@ struct Growth {
 /// A pouch of mucosa through the wall: a neck and a sac.
 struct Diverticulum {
     glm::dvec3 mouth{0.0};   ///< on the lumen's boundary
-    glm::dvec3 centre{0.0};  ///< of the sac
+    glm::dvec3 center{0.0};  ///< of the sac
     double sacRadiusMm = 3.0, neckRadiusMm = 1.4;
 
     static constexpr double wallMm = 1.2;
@@ -110,7 +110,7 @@ public:
         std::vector<int> growths;
         std::vector<int> diverticula;
     };
-    void findNearby(glm::dvec3 centre, double radiusMm, Nearby& nearby) const;
+    void findNearby(glm::dvec3 center, double radiusMm, Nearby& nearby) const;
 
     /// Geometry at p with any `nearby` found for a ball that contains p. Thread-safe.
     ColonPoint evaluate(glm::dvec3 p, const Nearby& nearby) const;

@@ -51,26 +51,26 @@ void addDiverticula(ColonShape& shape, std::uint64_t seed, int count) {
             if (!place || glm::distance(place->at, path.at(arc).position) < 0.8 * place->radiusMm)
                 continue;
             pouch.mouth = place->at;
-            pouch.centre = place->at - (neckMm + pouch.sacRadiusMm) * place->inward;
+            pouch.center = place->at - (neckMm + pouch.sacRadiusMm) * place->inward;
             const double roomMm = pouch.sacRadiusMm + shape.septumMm() + 2.5;
-            if (shape.smoothTubeMm(pouch.centre, arc, 60.0) < roomMm + 2.5) continue;
+            if (shape.smoothTubeMm(pouch.center, arc, 60.0) < roomMm + 2.5) continue;
             const auto near = [&](glm::dvec3 p, double distanceMm) {
-                return glm::distance(p, pouch.centre) < distanceMm ||
+                return glm::distance(p, pouch.center) < distanceMm ||
                        glm::distance(p, pouch.mouth) < distanceMm;
             };
             if (std::any_of(shape.growths().begin(), shape.growths().end(), [&](const Growth& g) {
-                    return near(g.centre, g.reachMm() + pouch.sacRadiusMm + 2.0);
+                    return near(g.center, g.reachMm() + pouch.sacRadiusMm + 2.0);
                 }))
                 continue;
             if (std::any_of(shape.diverticula().begin(), shape.diverticula().end(),
                             [&](const Diverticulum& d) {
-                                return near(d.centre, d.sacRadiusMm + pouch.sacRadiusMm + 2.5) ||
+                                return near(d.center, d.sacRadiusMm + pouch.sacRadiusMm + 2.5) ||
                                        near(d.mouth, pouch.sacRadiusMm + 4.0);
                             }))
                 continue;
             if (shape.valve() && near(shape.valve()->at, shape.valve()->reachMm() + 6.0)) continue;
             // The sac lies outside the bare lumen.
-            if (shape.evaluate(pouch.centre).lumenMm < pouch.sacRadiusMm - 0.5) continue;
+            if (shape.evaluate(pouch.center).lumenMm < pouch.sacRadiusMm - 0.5) continue;
             shape.add(pouch);
             break;
         }
@@ -93,14 +93,14 @@ FilledColon makeFilledColon(const PhantomOptions& options) {
     addSubmergedPolyps(shape, fluid, options.seed, options.preset);
     for (std::size_t n = dry; n < shape.growths().size(); ++n) {
         const Growth& growth = shape.growths()[n];
-        field.resample(shape, growth.centre, growth.reachMm() + 3.0);
+        field.resample(shape, growth.center, growth.reachMm() + 3.0);
     }
     std::optional<Ileum> ileum;
     if (bowel.ileumMm > 0.0) ileum = addIleum(shape, options.seed, body, bowel);
     if (shape.valve()) field.resample(shape, shape.valve()->at, shape.valve()->reachMm() + 3.0);
     addDiverticula(shape, options.seed, bowel.diverticula);
     for (const Diverticulum& pouch : shape.diverticula())
-        field.resample(shape, pouch.centre, pouch.sacRadiusMm + ColonShape::reachMm + 6.0);
+        field.resample(shape, pouch.center, pouch.sacRadiusMm + ColonShape::reachMm + 6.0);
     std::vector<Film> films = makeFilms(shape, options.seed, options.growths);
     return {std::move(shape), std::move(field), std::move(fluid), std::move(ileum),
             std::move(films)};

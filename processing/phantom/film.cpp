@@ -11,9 +11,9 @@
 namespace haustra::phantom {
 namespace {
 
-Film filmAt(glm::dvec3 centre, double radiusMm, Random& random) {
+Film filmAt(glm::dvec3 center, double radiusMm, Random& random) {
     Film film;
-    film.centre = centre;
+    film.center = center;
     film.radiusMm = radiusMm;
     film.thicknessMm = std::clamp(1.5 + 0.6 * random.normal(), 0.4, 3.0);
     film.hu = random.uniform(200.0, 900.0);
@@ -25,7 +25,7 @@ Film filmAt(glm::dvec3 centre, double radiusMm, Random& random) {
 
 double Film::thicknessAt(glm::dvec3 p) const {
     const double outline = radiusMm * (1.0 + 0.3 * valueNoise(seed, p, 6.0)),
-                 inward = 1.0 - glm::distance(p, centre) / outline;
+                 inward = 1.0 - glm::distance(p, center) / outline;
     if (inward <= 0.0) return 0.0;
     const double uneven = 1.0 + 0.5 * valueNoise(seed + 1, p, 4.0);
     return thicknessMm * uneven * smoothstep(0.0, 0.4, inward);
@@ -51,7 +51,7 @@ std::vector<Film> makeFilms(const ColonShape& shape, std::uint64_t seed,
                      turn = random.uniform(0.0, 2.0 * std::numbers::pi);
         const glm::dvec3 across = glm::cross(growth.inward, growth.tangent);
         films.push_back(filmAt(
-            growth.centre + aside * (std::cos(turn) * growth.tangent + std::sin(turn) * across),
+            growth.center + aside * (std::cos(turn) * growth.tangent + std::sin(turn) * across),
             reach + random.uniform(1.0, 5.0), random));
         films.back().growth = int(n);
     }
@@ -62,7 +62,7 @@ std::vector<Film> makeFilms(const ColonShape& shape, std::uint64_t seed,
         const double radius = random.uniform(4.0, 11.0);
         if (!place) continue;
         if (std::any_of(growths.begin(), growths.end(), [&](const Growth& growth) {
-                return glm::distance(growth.centre, place->at) < growth.reachMm() + radius;
+                return glm::distance(growth.center, place->at) < growth.reachMm() + radius;
             }))
             continue;
         films.push_back(filmAt(place->at, radius, random));

@@ -14,7 +14,7 @@ namespace haustra::phantom {
 /// carry one oftener than not, 1.5 mm thick in the mean, SD 0.6 (Kim et al., Eur Radiol
 /// 2014; 24: 940).
 struct Film {
-    glm::dvec3 centre{0.0};
+    glm::dvec3 center{0.0};
     double radiusMm = 8.0;
     double thicknessMm = 1.5;  ///< at its centre, in the mean
     double hu = 500.0;

@@ -60,21 +60,21 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         GrowthTruth truth;
         truth.kind = kindOf(growth);
         truth.neoplastic = growth.polyp();
-        truth.positionMm = growth.centre;
+        truth.positionMm = growth.center;
         truth.wallMm = growth.root + growth.rootDepthMm * growth.inward;
         const glm::dvec3 axes = growth.semiAxes;
         truth.diameterMm = 2.0 * std::max({axes.x, axes.y, axes.z});
-        truth.heightMm = glm::dot(growth.centre - truth.wallMm, growth.inward) + axes.z;
+        truth.heightMm = glm::dot(growth.center - truth.wallMm, growth.inward) + axes.z;
         truth.coreHu = growth.kind == Growth::Kind::hyperplastic     ? bumpHu
                        : growth.polyp() && !isPlain(growth, options) ? denseCoreHu
                                                                      : 0.0;
         if (growth.polyp()) truth.densityHu = densityOf(growth, options);
-        const auto at = colon.shape.evaluate(growth.centre);
+        const auto at = colon.shape.evaluate(growth.center);
         const PathSample axis = colon.shape.path().at(at.arcMm);
         truth.onFold = glm::distance(growth.root, axis.position) < 0.8 * axis.radiusMm;
         // How much of the head's height is below the level.
         const Pool& pool = colon.fluid.poolAt(at.arcMm);
-        const double height = colon.fluid.heightMm(growth.centre),
+        const double height = colon.fluid.heightMm(growth.center),
                      half = std::max(0.5, std::min({axes.x, axes.y, axes.z}));
         truth.submergedShare = std::clamp(0.5 + 0.5 * (pool.levelMm - height) / half, 0.0, 1.0);
         truth.untaggedShare = untaggedShareOf(pool, height - half, height + half);
@@ -82,19 +82,19 @@ std::vector<GrowthTruth> growthTruths(const FilledColon& colon, const GrowthOpti
         for (const Film& film : colon.films) {
             if (!growth.stool())
                 truth.filmMm = std::max(truth.filmMm,
-                                        film.thicknessAt(growth.centre + axes.z * growth.inward));
+                                        film.thicknessAt(growth.center + axes.z * growth.inward));
         }
         truths.push_back(truth);
     }
     for (const Film& film : colon.films) {
-        const double level = colon.fluid.poolAt(colon.shape.evaluate(film.centre).arcMm).levelMm;
-        const bool drowned = colon.fluid.heightMm(film.centre) + film.reachMm() < level;
+        const double level = colon.fluid.poolAt(colon.shape.evaluate(film.center).arcMm).levelMm;
+        const bool drowned = colon.fluid.heightMm(film.center) + film.reachMm() < level;
         if (film.growth >= 0 || drowned) continue;
         GrowthTruth truth;
         truth.kind = "film";
-        truth.positionMm = truth.wallMm = film.centre;
+        truth.positionMm = truth.wallMm = film.center;
         truth.diameterMm = 2.0 * film.radiusMm;
-        truth.heightMm = truth.filmMm = film.thicknessAt(film.centre);
+        truth.heightMm = truth.filmMm = film.thicknessAt(film.center);
         truths.push_back(truth);
     }
     return truths;

@@ -22,16 +22,16 @@ Growth polypAt(const WallPlace& place, Growth::Kind kind, double diameterMm, Ran
     if (kind == Growth::Kind::flat) {
         const double height = std::min(2.8, 0.4 * diameterMm);
         growth.semiAxes = {r, r * random.uniform(0.75, 0.95), height};
-        growth.centre = place.at;
+        growth.center = place.at;
     } else if (kind == Growth::Kind::pedunculated) {
         growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.8, 0.95)};
         growth.stalkRadiusMm = std::clamp(0.18 * diameterMm, 1.2, 2.4);
-        growth.centre = place.at + place.inward * (growth.semiAxes.z + random.uniform(2.5, 5.0));
+        growth.center = place.at + place.inward * (growth.semiAxes.z + random.uniform(2.5, 5.0));
         growth.rootDepthMm = 1.0;
         growth.root = place.at - growth.rootDepthMm * place.inward;
     } else {
         growth.semiAxes = {r, r * random.uniform(0.85, 1.0), r * random.uniform(0.85, 1.0)};
-        growth.centre = place.at + place.inward * (growth.semiAxes.z * random.uniform(0.25, 0.5));
+        growth.center = place.at + place.inward * (growth.semiAxes.z * random.uniform(0.25, 0.5));
     }
     return growth;
 }
@@ -77,13 +77,13 @@ private:
     bool crowded(glm::dvec3 at, double apartMm) const {
         const auto& others = shape_.growths();
         return std::any_of(others.begin(), others.end(),
-                           [&](const Growth& g) { return glm::distance(g.centre, at) < apartMm; });
+                           [&](const Growth& g) { return glm::distance(g.center, at) < apartMm; });
     }
     /// The axis stays open, so that the true centerline runs through lumen.
     bool blocksAxis(const Growth& growth) const {
         const auto& samples = shape_.path().samples;
         return std::any_of(samples.begin(), samples.end(), [&](const PathSample& s) {
-            return glm::distance(s.position, growth.centre) < growth.reachMm() + 3.0 &&
+            return glm::distance(s.position, growth.center) < growth.reachMm() + 3.0 &&
                    growth.distance(s.position) < 2.5;
         });
     }
@@ -155,7 +155,7 @@ void addGrowths(ColonShape& shape, std::uint64_t seed, Preset preset, const Body
             const double x = random.uniform(0.9, 1.4), y = random.uniform(0.8, 1.2),
                          z = random.uniform(0.7, 1.0);
             stool.semiAxes = r * glm::dvec3(x, y, z);
-            stool.centre = place.at + place.inward * (0.75 * stool.semiAxes.z);
+            stool.center = place.at + place.inward * (0.75 * stool.semiAxes.z);
             stool.seed = random.bits();
             stool.hu = n >= tagged              ? random.uniform(5.0, 60.0)
                        : preset == Preset::hard ? random.uniform(200.0, 400.0)
@@ -188,8 +188,8 @@ void addSubmergedPolyps(ColonShape& shape, const Fluid& fluid, std::uint64_t see
         where.attempts = 600;
         where.apartMm = 20.0;
         where.fits = [&](const Growth& growth) {
-            const double height = fluid.heightMm(growth.centre);
-            const double depth = fluid.poolAt(shape.evaluate(growth.centre).arcMm).levelMm - height;
+            const double height = fluid.heightMm(growth.center);
+            const double depth = fluid.poolAt(shape.evaluate(growth.center).arcMm).levelMm - height;
             // The whole head and a little fluid above it; or the surface about its middle.
             return kind.cutBySurface ? std::abs(depth) < 0.1 * diameter
                                      : depth > 0.55 * diameter + 1.5;
@@ -222,12 +222,12 @@ void addMoreGrowths(ColonShape& shape, std::uint64_t seed, const GrowthOptions& 
                 const double height = random.uniform(0.4, 0.85) * diameter,
                              half = std::min(growth.semiAxes.x, 0.62 * height);
                 growth.semiAxes.z = half;
-                growth.centre = place.at + place.inward * (height - half);
+                growth.center = place.at + place.inward * (height - half);
             } else if (kind == Growth::Kind::flat) {
                 growth.semiAxes.z = std::min(random.uniform(1.8, 3.0), 0.45 * diameter);
             } else {
                 // The stalk leans.
-                growth.centre += random.uniform(-2.0, 2.0) * place.tangent;
+                growth.center += random.uniform(-2.0, 2.0) * place.tangent;
             }
             return growth;
         });
@@ -261,7 +261,7 @@ void addMoreGrowths(ColonShape& shape, std::uint64_t seed, const GrowthOptions& 
             const double x = random.uniform(0.9, 1.3), y = random.uniform(0.8, 1.2),
                          z = random.uniform(0.6, 1.0);
             stool.semiAxes = r * glm::dvec3(x, y, z);
-            stool.centre = place.at + place.inward * (random.uniform(0.5, 0.9) * stool.semiAxes.z);
+            stool.center = place.at + place.inward * (random.uniform(0.5, 0.9) * stool.semiAxes.z);
             stool.seed = random.bits();
             stool.hu = random.uniform(5.0, 60.0);
             return stool;
@@ -275,7 +275,7 @@ Findings polypsOf(const ColonShape& shape) {
         if (!growth.polyp()) continue;
         const double diameter =
             2.0 * std::max({growth.semiAxes.x, growth.semiAxes.y, growth.semiAxes.z});
-        polyps.findings.push_back({growth.centre, diameter, 1.0,
+        polyps.findings.push_back({growth.center, diameter, 1.0,
                                    growth.kind == Growth::Kind::sessile        ? "sessile"
                                    : growth.kind == Growth::Kind::pedunculated ? "pedunculated"
                                                                                : "flat"});

@@ -156,7 +156,7 @@ std::optional<Ileum> addIleum(ColonShape& shape, std::uint64_t seed, const BodyP
                           random.uniform(7.0, 10.0)};
         const bool crowded =
             std::any_of(shape.growths().begin(), shape.growths().end(), [&](const Growth& g) {
-                return glm::distance(g.centre, valve.at) < g.reachMm() + valve.reachMm() + 2.0;
+                return glm::distance(g.center, valve.at) < g.reachMm() + valve.reachMm() + 2.0;
             });
         if (crowded || shape.smoothTubeMm(valve.at - 12.0 * valve.inward, arc, 70.0) < 10.0)
             continue;

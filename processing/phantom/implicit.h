@@ -9,8 +9,8 @@
 namespace haustra::phantom {
 
 /// Approximate signed distance to an ellipsoid (exact for a sphere; first order elsewhere).
-inline double ellipsoid(glm::dvec3 p, glm::dvec3 centre, glm::dvec3 semiAxes) {
-    const glm::dvec3 q = (p - centre) / semiAxes;
+inline double ellipsoid(glm::dvec3 p, glm::dvec3 center, glm::dvec3 semiAxes) {
+    const glm::dvec3 q = (p - center) / semiAxes;
     const double k0 = glm::length(q), k1 = glm::length(q / semiAxes);
     return k1 > 1e-9 ? k0 * (k0 - 1.0) / k1 : -std::min({semiAxes.x, semiAxes.y, semiAxes.z});
 }

@@ -65,17 +65,17 @@ public:
         if (origin.z + n <= fieldOffset || origin.z >= fieldOffset + grid.size.z) return;
         const auto tagged = slab.tagged.writable(), untagged = slab.untagged.writable();
         std::vector<const Growth*> stool;
-        const glm::dvec3 centre =
+        const glm::dvec3 center =
             field_.grid().patientFromVoxelPoint(glm::dvec3(origin) + 0.5 * (n - 1.0));
         for (const Growth* ball : stool_) {
-            if (glm::distance(ball->centre, centre) <
+            if (glm::distance(ball->center, center) <
                 ball->reachMm() + 2.0 + n * glm::length(grid.spacingMm())) {
                 stool.push_back(ball);
             }
         }
         std::vector<const Film*> films;
         for (const Film& film : films_) {
-            if (glm::distance(film.centre, centre) <
+            if (glm::distance(film.center, center) <
                 film.reachMm() + n * glm::length(grid.spacingMm()))
                 films.push_back(&film);
         }
@@ -329,7 +329,7 @@ Structure structureOf(const FilledColon& colon, const PhantomOptions& options,
         structure.valve = {valve->at, valve->inward, valve->arcMm, valve->open};
     if (options.bowel.rectalTube) structure.rectalTube = RectalTube(path, options.seed).structure();
     for (const Diverticulum& pouch : shape.diverticula())
-        structure.diverticula.push_back({pouch.centre, 2.0 * pouch.sacRadiusMm});
+        structure.diverticula.push_back({pouch.center, 2.0 * pouch.sacRadiusMm});
     structure.segmentEndsMm = {path.rectumEndMm,
                                path.sigmoidEndMm,
                                path.descendingEndMm,

@@ -36,9 +36,9 @@ void blurLines(float* data, int length, std::size_t stride, int lines,
         std::copy_n(data + n * stride, lines, &copy[std::size_t(n) * lines]);
     for (int n = 0; n < length; ++n) {
         float* out = data + n * stride;
-        const float* centre = &copy[std::size_t(n) * lines];
+        const float* center = &copy[std::size_t(n) * lines];
         for (int m = 0; m < lines; ++m)
-            out[m] = kernel[0] * centre[m];
+            out[m] = kernel[0] * center[m];
         for (int r = 1; r < int(kernel.size()); ++r) {
             const float* before = &copy[std::size_t(std::max(0, n - r)) * lines];
             const float* after = &copy[std::size_t(std::min(length - 1, n + r)) * lines];

@@ -21,14 +21,14 @@ Centerline trueCenterline(const ColonShape& shape, const Volume<std::uint8_t>& l
             point.positionMm = path.samples[n].position;
             point.arcMm = path.stepMm * double(n);
             const glm::dvec3 at(voxelFromPatient * glm::dvec4(point.positionMm, 1.0));
-            const glm::ivec3 centre(glm::round(at));
-            point.gap = !grid.contains(centre) || lumen.at(centre) == 0;
+            const glm::ivec3 center(glm::round(at));
+            point.gap = !grid.contains(center) || lumen.at(center) == 0;
             if (point.gap) continue;
             // The axis is nowhere farther from the wall than the sacculated tube is wide.
             const double farthest = 1.3 * std::max(path.samples[n].radiusMm, 5.0) + 4.0;
             const glm::ivec3 reach(glm::ceil(farthest / spacing));
-            const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
-                             hi = glm::min(centre + reach, grid.size - 1);
+            const glm::ivec3 lo = glm::max(center - reach, glm::ivec3(0)),
+                             hi = glm::min(center + reach, grid.size - 1);
             double nearest = farthest * farthest;
             visitBox(lo, hi, [&](glm::ivec3 v) {
                 if (lumen.at(v)) return;
@@ -48,9 +48,9 @@ std::vector<std::vector<std::uint32_t>> polypVoxels(const ColonShape& shape, con
         if (!growth.polyp()) continue;
         auto& voxels = all.emplace_back();
         ColonShape::Nearby nearby;
-        shape.findNearby(growth.centre, growth.reachMm(), nearby);
+        shape.findNearby(growth.center, growth.reachMm(), nearby);
         nearby.growths.clear();  // the bare tube with its folds
-        const glm::dvec3 middle(voxelFromPatient * glm::dvec4(growth.centre, 1.0));
+        const glm::dvec3 middle(voxelFromPatient * glm::dvec4(growth.center, 1.0));
         const glm::dvec3 reach = growth.reachMm() / grid.spacingMm();
         const glm::ivec3 lo = glm::max(glm::ivec3(glm::ceil(middle - reach)), glm::ivec3(0)),
                          hi = glm::min(glm::ivec3(glm::floor(middle + reach)), grid.size - 1);

@@ -197,7 +197,7 @@ std::vector<NodePlaces> placesOf(const PieceGraph& graph, const TubePieces& cut,
     }
     for (std::size_t n = 0; n < places.size(); ++n) {
         if (places[n].samplesMm.empty())
-            places[n].samplesMm.push_back(cut.pieces[std::size_t(graph.pieceOf[n])].centreMm);
+            places[n].samplesMm.push_back(cut.pieces[std::size_t(graph.pieceOf[n])].centerMm);
     }
     return places;
 }
@@ -209,8 +209,8 @@ BodyFrame frameOf(const PieceGraph& graph, const TubePieces& cut,
     for (std::size_t n = 0; n < places.size(); ++n) {
         const TubePiece& piece = cut.pieces[std::size_t(graph.pieceOf[n])];
         if (!isWide(piece)) continue;
-        low = std::min({low, piece.centreMm.z - piece.radiusMm, places[n].lowestMm.z});
-        high = std::max(high, piece.centreMm.z + piece.radiusMm);
+        low = std::min({low, piece.centerMm.z - piece.radiusMm, places[n].lowestMm.z});
+        high = std::max(high, piece.centerMm.z + piece.radiusMm);
     }
     return findBodyFrame(softTissueMm, low, high);
 }
@@ -223,7 +223,7 @@ ChainNode nodeOf(const TubePiece& piece, const NodePlaces& places, const BodyFra
     // As a tube of that calibre, but no longer than it reaches: bone is plates.
     node.lengthMm = std::min(1000.0 * piece.volumeMl / (M_PI * piece.radiusMm * piece.radiusMm),
                              1.5 * glm::distance(places.lowCornerMm, places.highCornerMm));
-    node.centreMm = piece.centreMm;
+    node.centerMm = piece.centerMm;
     for (std::size_t part = 0; part < colonParts; ++part) {
         for (const glm::dvec3& at : places.samplesMm) {
             node.placeLogOdds[part] +=

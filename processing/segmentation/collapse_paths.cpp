@@ -208,12 +208,12 @@ public:
              double radiusMm)
         : cells_(cells), node_(node), own_(own), radiusMm_(radiusMm) {}
 
-    std::vector<Cap> find(const std::vector<glm::ivec3>& doors, glm::ivec3 centre) const {
+    std::vector<Cap> find(const std::vector<glm::ivec3>& doors, glm::ivec3 center) const {
         std::vector<std::uint32_t> from;
         for (const glm::ivec3 door : doors)
             from.push_back(nearestCell(door));
         if (from.empty()) {
-            const auto first = distances({nearestCell(centre)});
+            const auto first = distances({nearestCell(center)});
             const auto second = distances({farthest(first).first});
             return {capOf(second), capOf(distances({farthest(second).first}))};
         }
@@ -276,7 +276,7 @@ std::vector<Cap> findCaps(const CellGrid& cells, const TubePieces& cut,
             if (cellsOf[n].empty()) continue;
             const TubePiece& piece = cut.pieces[std::size_t(candidates[n])];
             capsOf[n] = NodeCaps(cells, std::int32_t(n), cellsOf[n], piece.radiusMm)
-                            .find(doors[n], piece.centre);
+                            .find(doors[n], piece.center);
         }
     });
     std::vector<Cap> caps;

@@ -129,7 +129,7 @@ private:
     /// How far a haustrum, or the colon's blind end, may reach beyond a door.
     double sacReachMm(int base) const { return 1.5 * node(base).radiusMm + 12.0; }
     double reachBehindMm(int j, int side) const {
-        return glm::distance(node(side).centreMm, junction(j).placeMm) + node(side).radiusMm;
+        return glm::distance(node(side).centerMm, junction(j).placeMm) + node(side).radiusMm;
     }
     /// Not fluids that one lumen would have mixed: opacified ileum beside the colon's fluid.
     bool holdsTheSame(int j) const { return junction(j).mismatch < 0.5; }

@@ -13,7 +13,7 @@ struct ChainNode {
     double lengthMm = 0.0;  ///< volume over the inscribed circle's area
     double radiusMm = 0.0;  ///< of the largest ball inside
     double volumeMl = 0.0;
-    glm::dvec3 centreMm{0.0};
+    glm::dvec3 centerMm{0.0};
     std::array<double, colonParts>
         placeLogOdds{};  ///< of lying where that part does, mean over the piece
     std::array<double, colonParts> foldLogOdds{};  ///< of that part's folds, not the small bowel's

@@ -183,13 +183,13 @@ private:
         for (std::size_t step = 0; step < chain_.nodes.size(); ++step) {
             const TubePiece& piece = cut_.pieces[std::size_t(pieceOf(chain_.nodes[step]))];
             const std::uint32_t seed = std::uint32_t(
-                grid_.index(step == 0 ? lowestVoxel(pieceOf(chain_.nodes[0])) : piece.centre));
+                grid_.index(step == 0 ? lowestVoxel(pieceOf(chain_.nodes[0])) : piece.center));
             if (way[seed] < 0.0f) spreadFrom(seed);
         }
         return ways;
     }
     glm::ivec3 lowestVoxel(std::int32_t piece) const {
-        glm::ivec3 lowest = cut_.pieces[std::size_t(piece)].centre;
+        glm::ivec3 lowest = cut_.pieces[std::size_t(piece)].center;
         double lowestMm = 1e9;
         for (std::size_t n = 0; n < cut_.pieceAt.voxels().size(); ++n) {
             if (cut_.pieceAt[n] != piece) continue;
@@ -501,10 +501,10 @@ private:
     // crumb: a bridge to a crumb joins nothing.
     std::optional<glm::ivec3> nearestOf(std::int32_t piece, glm::dvec3 pointMm) const {
         constexpr double reachMm = 12.0;
-        const glm::ivec3 centre(glm::round(grid_.voxelFromPatientPoint(pointMm)));
+        const glm::ivec3 center(glm::round(grid_.voxelFromPatientPoint(pointMm)));
         const glm::ivec3 reach = glm::ivec3(reachMm / grid_.spacingMm()) + 1;
-        const glm::ivec3 lo = glm::max(centre - reach, glm::ivec3(0)),
-                         hi = glm::min(centre + reach, grid_.size - 1);
+        const glm::ivec3 lo = glm::max(center - reach, glm::ivec3(0)),
+                         hi = glm::min(center + reach, grid_.size - 1);
         const auto ofBody = [&](glm::ivec3 v) {
             constexpr int leastFaces = 3;
             int faces = 0;

@@ -31,12 +31,12 @@ namespace {
 template <class Visit>
 void visitBalls(const Grid& grid, const std::vector<CutBall>& balls, const Visit& visit) {
     for (const CutBall& ball : balls) {
-        const glm::dvec3 centre = grid.voxelFromPatientPoint(ball.centreMm);
+        const glm::dvec3 center = grid.voxelFromPatientPoint(ball.centerMm);
         const glm::ivec3 reach = glm::ivec3(ball.radiusMm / grid.spacingMm()) + 1;
-        const glm::ivec3 lo = glm::max(glm::ivec3(centre) - reach, glm::ivec3(0)),
-                         hi = glm::min(glm::ivec3(centre) + reach + 1, grid.size - 1);
+        const glm::ivec3 lo = glm::max(glm::ivec3(center) - reach, glm::ivec3(0)),
+                         hi = glm::min(glm::ivec3(center) + reach + 1, grid.size - 1);
         visitBox(lo, hi, [&](glm::ivec3 v) {
-            if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), ball.centreMm) <=
+            if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), ball.centerMm) <=
                 ball.radiusMm)
                 visit(grid.index(v));
         });
@@ -65,14 +65,14 @@ Volume<std::int16_t> walledOff(const Volume<std::int16_t>& hu, const std::vector
 Result<std::int32_t> pieceAt(const TubePieces& cut, glm::dvec3 pointMm) {
     constexpr double reachMm = 3.0;
     const Grid& grid = cut.pieceAt.grid();
-    const glm::ivec3 centre(glm::round(grid.voxelFromPatientPoint(pointMm)));
+    const glm::ivec3 center(glm::round(grid.voxelFromPatientPoint(pointMm)));
     const glm::ivec3 reach(glm::ceil(reachMm / grid.spacingMm()));
     std::int32_t piece = -1;
     double nearest = std::numeric_limits<double>::max();
     for (int k = -reach.z; k <= reach.z; ++k) {
         for (int j = -reach.y; j <= reach.y; ++j) {
             for (int i = -reach.x; i <= reach.x; ++i) {
-                const glm::ivec3 v = centre + glm::ivec3(i, j, k);
+                const glm::ivec3 v = center + glm::ivec3(i, j, k);
                 if (!grid.contains(v) || cut.pieceAt.at(v) < 0) continue;
                 const double d = glm::distance(grid.patientFromVoxelPoint(glm::dvec3(v)), pointMm);
                 if (d <= reachMm && d < nearest) nearest = d, piece = cut.pieceAt.at(v);
@@ -124,7 +124,7 @@ std::vector<glm::dvec3> placesOf(const ColonEdits& edits) {
     std::vector<glm::dvec3> places = edits.seedsMm;
     places.insert(places.end(), edits.excludesMm.begin(), edits.excludesMm.end());
     for (const CutBall& ball : edits.cuts)
-        places.push_back(ball.centreMm);
+        places.push_back(ball.centerMm);
     for (const auto& [a, b] : edits.joins)
         places.push_back(a), places.push_back(b);
     return places;

@@ -96,12 +96,12 @@ std::size_t fillEnclosed(Volume<std::uint8_t>& labels, int threads) {
 
 // The component at a point, or the nearest one within reach; −1 where there is none.
 int componentNear(const topology::RunComponents& components, const Grid& grid, glm::dvec3 pointMm) {
-    const glm::dvec3 centre = grid.voxelFromPatientPoint(pointMm);
+    const glm::dvec3 center = grid.voxelFromPatientPoint(pointMm);
     const glm::dvec3 spacing = grid.spacingMm();
     const auto lowest =
-        glm::max(glm::ivec3(glm::floor(centre - seedReachMm / spacing)), glm::ivec3(0));
+        glm::max(glm::ivec3(glm::floor(center - seedReachMm / spacing)), glm::ivec3(0));
     const auto highest =
-        glm::min(glm::ivec3(glm::ceil(centre + seedReachMm / spacing)), grid.size - 1);
+        glm::min(glm::ivec3(glm::ceil(center + seedReachMm / spacing)), grid.size - 1);
     double nearestMm = seedReachMm;
     int found = -1;
     visitBox(lowest, highest, [&](glm::ivec3 v) {

@@ -52,7 +52,7 @@ std::vector<RunnerUp> runnersUp(const PieceGraph& graph, const std::vector<Colon
         const auto differs = [&](int n, double& sumMl) {
             const ChainNode& node = graph.graph.nodes[std::size_t(n)];
             sumMl += node.volumeMl;
-            if (node.volumeMl > largest) largest = node.volumeMl, up.placeMm = node.centreMm;
+            if (node.volumeMl > largest) largest = node.volumeMl, up.placeMm = node.centerMm;
         };
         for (const int n : other) {
             if (!best.count(n)) differs(n, up.addsMl);
@@ -91,7 +91,7 @@ public:
             const double voxelMl = piece.volumeMl / double(piece.voxels);
             const double gasMl = double(piece.gasVoxels) * voxelMl,
                          untaggedMl = double(piece.untaggedVoxels) * voxelMl;
-            made_.pieces.push_back({ColonPart(chain_.states[n]), node.centreMm, node.radiusMm,
+            made_.pieces.push_back({ColonPart(chain_.states[n]), node.centerMm, node.radiusMm,
                                     wayThrough(n), gasMl, piece.volumeMl - gasMl - untaggedMl,
                                     untaggedMl, node.lengthMm});
         }
@@ -160,7 +160,7 @@ private:
         const glm::dvec3 from =
                              isFirst ? farthestMm(node, mouthMm(n, false)) : mouthMm(n - 1, true),
                          to = isLast ? farthestMm(node, from) : mouthMm(n, false);
-        return glm::distance(from, at.centreMm) + glm::distance(at.centreMm, to);
+        return glm::distance(from, at.centerMm) + glm::distance(at.centerMm, to);
     }
 
     const TubePiece& pieceOf(int node) const {
@@ -174,8 +174,8 @@ private:
             const auto nearest =
                 std::min_element(made_.pieces.begin(), made_.pieces.end(),
                                  [&](const ColonPiece& a, const ColonPiece& b) {
-                                     return glm::distance(a.centreMm, piece.centreMm) - a.radiusMm <
-                                            glm::distance(b.centreMm, piece.centreMm) - b.radiusMm;
+                                     return glm::distance(a.centerMm, piece.centerMm) - a.radiusMm <
+                                            glm::distance(b.centerMm, piece.centerMm) - b.radiusMm;
                                  });
             nearest->untaggedMl +=
                 piece.volumeMl * double(piece.untaggedVoxels) / double(piece.voxels);
@@ -187,7 +187,7 @@ private:
         ColonPart part = ColonPart::rectum;
         double nearest = 1e9;
         for (const ColonPiece& piece : made_.pieces) {
-            const double mm = glm::distance(piece.centreMm, placeMm) - piece.radiusMm;
+            const double mm = glm::distance(piece.centerMm, placeMm) - piece.radiusMm;
             if (mm < nearest) nearest = mm, part = piece.part;
         }
         return part;
@@ -208,17 +208,17 @@ private:
 
     // Gas of a balloon, or a ball of stool; a bridge may cross what was left out.
     bool isTakenIn(const TubePiece& piece) const {
-        const auto label = LumenLabel(labels_.labels.at(piece.centre));
+        const auto label = LumenLabel(labels_.labels.at(piece.center));
         return label != LumenLabel::outside && label != LumenLabel::bridge;
     }
 
     LeftOutBody leftOut(const TubePiece& piece, bool opens) const {
-        LeftOutBody body{piece.centreMm, piece.volumeMl, piece.content(), ColonPart::rectum, 1e9,
+        LeftOutBody body{piece.centerMm, piece.volumeMl, piece.content(), ColonPart::rectum, 1e9,
                          opens};
         for (std::size_t c = 0; c < chain_.nodes.size(); ++c) {
             const ChainNode& kept = graph_.graph.nodes[std::size_t(chain_.nodes[c])];
             const double mm =
-                glm::distance(kept.centreMm, piece.centreMm) - kept.radiusMm - piece.radiusMm;
+                glm::distance(kept.centerMm, piece.centerMm) - kept.radiusMm - piece.radiusMm;
             if (mm < body.distanceMm)
                 body.distanceMm = mm, body.nearest = ColonPart(chain_.states[c]);
         }
@@ -230,7 +230,7 @@ private:
     // the stomach's, bowel's or free, and nothing but a person's word tells which.
     bool isMuchGas(const LeftOutBody& body, const ChainNode& node) const {
         constexpr double leastMl = 25.0, leastRadiusMm = 8.0, mostAside = 1.1;
-        const glm::dvec3 at = glm::abs(graph_.frame.place(body.centreMm));
+        const glm::dvec3 at = glm::abs(graph_.frame.place(body.centerMm));
         return body.content == BodyContent::gas && node.given >= 0.0 && body.volumeMl >= leastMl &&
                node.radiusMm >= leastRadiusMm && at.x <= mostAside && at.y <= mostAside;
     }
@@ -371,7 +371,7 @@ private:
         for (const LeftOutBody& body : made_.leftOut) {
             if (!body.isFarGas()) continue;
             sumMl += body.volumeMl;
-            places.add(body.centreMm);
+            places.add(body.centerMm);
         }
         if (places.none()) return;
         made_.warnings.push_back(
@@ -397,7 +397,7 @@ private:
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
-                places.add(body.centreMm);
+                places.add(body.centerMm);
             }
             if (places.none()) continue;
             made_.warnings.push_back(
@@ -436,7 +436,7 @@ private:
             made_.warnings.push_back(printed(
                 "%.0f ml in the %s are as bright as tagged material, which shows no level in "
                 "this scan; they may be bone, at %s",
-                piece.taggedMl, toString(piece.part), placeText(piece.centreMm).c_str()));
+                piece.taggedMl, toString(piece.part), placeText(piece.centerMm).c_str()));
         }
     }
 

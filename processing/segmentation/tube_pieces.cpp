@@ -638,7 +638,7 @@ struct PieceTally {
     Core core;
     std::array<std::size_t, 3> faces{}, excludedAirFaces{};  ///< across each axis
     float radiusMm = 0.0f;
-    glm::ivec3 centre{0};
+    glm::ivec3 center{0};
 
     void add(const PieceTally& other) {
         voxels += other.voxels, gasVoxels += other.gasVoxels;
@@ -649,7 +649,7 @@ struct PieceTally {
             faces[axis] += other.faces[axis];
             excludedAirFaces[axis] += other.excludedAirFaces[axis];
         }
-        if (other.radiusMm > radiusMm) radiusMm = other.radiusMm, centre = other.centre;
+        if (other.radiusMm > radiusMm) radiusMm = other.radiusMm, center = other.center;
     }
 };
 
@@ -673,7 +673,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
             tally.untaggedVoxels += own == Content::untagged;
             const float mm = cut.distanceMm[n];
             if (isCore(content[n], mm)) tally.core.add(hu[n]);
-            if (mm > tally.radiusMm) tally.radiusMm = mm, tally.centre = v;
+            if (mm > tally.radiusMm) tally.radiusMm = mm, tally.center = v;
             visitFaces(grid, n, v, [&](std::size_t m, int axis) {
                 if (label[m] == l) return;
                 ++tally.faces[std::size_t(axis)];
@@ -695,7 +695,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
         TubePiece& piece = cut.pieces[p];
         piece.voxels = tally.voxels, piece.gasVoxels = tally.gasVoxels;
         piece.taggedVoxels = tally.taggedVoxels, piece.untaggedVoxels = tally.untaggedVoxels;
-        piece.radiusMm = tally.radiusMm, piece.centre = tally.centre;
+        piece.radiusMm = tally.radiusMm, piece.center = tally.center;
         piece.surfaceMm2 = areaMm2(tally.faces);
         piece.excludedAirMm2 = areaMm2(tally.excludedAirFaces);
         if (tally.core.voxels > 0) {
@@ -705,7 +705,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
                 std::max(0.0, double(tally.core.sumHu2) / voxels - piece.coreHu * piece.coreHu));
         }
         piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
-        piece.centreMm = grid.patientFromVoxelPoint(piece.centre);
+        piece.centerMm = grid.patientFromVoxelPoint(piece.center);
         piece.meanHu =
             piece.mostlyGas()
                 ? double(tally.gasHu) / double(std::max<std::size_t>(1, piece.gasVoxels))

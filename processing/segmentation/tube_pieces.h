@@ -14,8 +14,8 @@ struct TubePiece {
     std::size_t voxels = 0, gasVoxels = 0, taggedVoxels = 0, untaggedVoxels = 0;
     double volumeMl = 0.0;
     double radiusMm = 0.0;  ///< of the largest ball inside
-    glm::ivec3 centre{0};   ///< that ball's voxel
-    glm::dvec3 centreMm{0.0};
+    glm::ivec3 center{0};   ///< that ball's voxel
+    glm::dvec3 centerMm{0.0};
     double meanHu = 0.0;  ///< of gas where it is mostly gas, of tagged material elsewhere
     double coreHu = 0.0, coreSdHu = 0.0;  ///< of its tagged voxels more than 2.5 mm deep
     double surfaceMm2 = 0.0;              ///< faces towards anything else than the piece

@@ -156,11 +156,11 @@ private:
         return at.x >= 0 && at.y >= 0 && at.x < size_.x && at.y < size_.y;
     }
     template <class Visit>
-    void visitDisc(glm::ivec2 centre, const Visit& visit) const {
+    void visitDisc(glm::ivec2 center, const Visit& visit) const {
         for (int z = -reach_.y; z <= reach_.y; ++z) {
             for (int n = -reach_.x; n <= reach_.x; ++n) {
                 if (glm::length(stepMm_ * glm::dvec2(n, z)) <= discMm)
-                    visit(centre + glm::ivec2(n, z));
+                    visit(center + glm::ivec2(n, z));
             }
         }
     }

@@ -14,8 +14,8 @@
 namespace haustra::segmentation {
 namespace {
 
-constexpr double smoothMm = 1.5, centreSmoothMm = 3.0;
-constexpr double centreShare = 0.8;    // of the way to another tissue, at a ball's centre
+constexpr double smoothMm = 1.5, centerSmoothMm = 3.0;
+constexpr double centerShare = 0.8;    // of the way to another tissue, at a ball's centre
 constexpr double aboveMm = 20.0;       // the level, where leaks are looked for
 constexpr double blurMm = 3.0;         // of partial volume at a level
 constexpr double blurredWallMm = 1.0;  // taken for fluid beside fat
@@ -117,8 +117,8 @@ private:
         const double fromHu = 0.5 * (level_.fluidHu + fatHu),
                      toHu = 0.5 * (level_.fluidHu + softHu);
         fluid_ = looksLike(smoothMm, fromHu, toHu, fatHu);
-        centres_ = looksLike(centreSmoothMm, glm::mix(level_.fluidHu, fromHu, centreShare),
-                             glm::mix(level_.fluidHu, toHu, centreShare), fatHu);
+        centers_ = looksLike(centerSmoothMm, glm::mix(level_.fluidHu, fromHu, centerShare),
+                             glm::mix(level_.fluidHu, toHu, centerShare), fatHu);
         inside_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
         blur_ = Volume<std::uint8_t>(grid, std::uint8_t(0));
         const auto inside = inside_.writable(), blur = blur_.writable();
@@ -163,7 +163,7 @@ private:
         const auto out = beyond.writable();
         std::vector<std::uint32_t> front;
         const auto take = [&](std::size_t n) {
-            if (out[n] == 0 || !fluid_[n] || !centres_[n] || !(distanceMm_[n] > ballMm))
+            if (out[n] == 0 || !fluid_[n] || !centers_[n] || !(distanceMm_[n] > ballMm))
                 return false;
             out[n] = 0;
             return true;
@@ -338,7 +338,7 @@ private:
     Volume<std::int16_t> hu_;
     Volume<std::uint8_t> content_;
     Volume<std::uint8_t> fluid_;    ///< looks like the level's fluid
-    Volume<std::uint8_t> centres_;  ///< the same by more of its surroundings, and surer
+    Volume<std::uint8_t> centers_;  ///< the same by more of its surroundings, and surer
     Volume<std::uint8_t> blur_;     ///< partial volume between fluid and gas
     Volume<std::uint8_t> inside_;  ///< where no wall stands in a ball's way; gas below is another's
     Volume<float> distanceMm_;

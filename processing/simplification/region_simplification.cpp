@@ -244,8 +244,8 @@ bool RegionSimplification::withinBound(const Replacement& r) {
     if (!part_.samples.findTriangles(patch_)) return false;
     for (const NearTriangle& t : patch_.triangles) {
         // Corner 0 moves, or ends the new edge 0–1; each spoke is the edge from it in one triangle.
-        const glm::vec3 centre = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
-        if (!part_.samples.nearInput(centre, patch_)) return false;
+        const glm::vec3 center = (t.corner[0] + t.corner[1] + t.corner[2]) * (1.0f / 3.0f);
+        if (!part_.samples.nearInput(center, patch_)) return false;
         for (const float share : {0.25f, 0.5f, 0.75f}) {
             if (!part_.samples.nearInput(t.corner[0] + share * t.edge[0], patch_)) return false;
         }
@@ -322,7 +322,7 @@ bool RegionSimplification::relax(int v) {
     Replacement& r = replacement_;
     r.oldTriangles.clear();
     r.corners.clear();
-    glm::dvec3 normal(0.0), centre(0.0);
+    glm::dvec3 normal(0.0), center(0.0);
     double weights = 0.0;
     mesh_.aroundVertex(v, [&](int corner) {
         const int b = mesh_.vertex[CornerMesh::next(corner)];
@@ -331,14 +331,14 @@ bool RegionSimplification::relax(int v) {
         r.corners.push_back({v, b, c});
         normal += upright(mesh_.position[v], mesh_.position[b], mesh_.position[c]);
         const double length = glm::distance(mesh_.position[b], mesh_.position[c]);
-        centre += length * (mesh_.position[b] + mesh_.position[c]) * 0.5;
+        center += length * (mesh_.position[b] + mesh_.position[c]) * 0.5;
         weights += length;
     });
     const double squared = glm::dot(normal, normal);
     if (!(squared > 0.0)) return false;
     r.newTriangles = r.oldTriangles;
     r.moved = v;
-    glm::dvec3 step = centre / weights - mesh_.position[v];
+    glm::dvec3 step = center / weights - mesh_.position[v];
     step -= normal * (glm::dot(normal, step) / squared);
     for (const double share : {1.0, 0.5, 0.2}) {
         r.place = mesh_.position[v] + share * step;

@@ -37,7 +37,7 @@ public:
             while (n + 1 < count_ && parabolas_[std::size_t(n) + 1].from <= double(i))
                 ++n;
             const Parabola& p = parabolas_[std::size_t(n)];
-            const double away = double(i - p.centre);
+            const double away = double(i - p.center);
             squared[i] = (p.height + away * away) * step_ * step_;
         }
     }
@@ -46,20 +46,20 @@ private:
     struct Parabola {
         double height;  // in units of step²
         double from;    // lowest from here on, up to the next one's `from`
-        int centre;
+        int center;
     };
 
-    void push(int centre, double height) {
+    void push(int center, double height) {
         double from = -infinity;
         while (count_ > 0) {
             const Parabola& last = parabolas_[std::size_t(count_) - 1];
-            const double apart = double(centre - last.centre);
-            from = 0.5 * ((height - last.height) / apart + double(centre + last.centre));
+            const double apart = double(center - last.center);
+            from = 0.5 * ((height - last.height) / apart + double(center + last.center));
             if (from > last.from) break;
             --count_;
             from = -infinity;
         }
-        parabolas_[std::size_t(count_++)] = {height, from, centre};
+        parabolas_[std::size_t(count_++)] = {height, from, center};
     }
 
     double step_;

@@ -86,9 +86,9 @@ CLI::Option* addBallsOption(CLI::App& command, const std::string& name, std::vec
             auto numbers = parseNumbers(text, ',', 4);
             if (!numbers) numbers = parseNumbers(text, ',', 3);
             CutBall ball;
-            if (numbers) ball.centreMm = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+            if (numbers) ball.centerMm = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
             if (numbers && numbers->size() == 4) ball.radiusMm = (*numbers)[3];
-            if (!numbers || !isPatientPoint(ball.centreMm) || !isCutRadius(ball.radiusMm))
+            if (!numbers || !isPatientPoint(ball.centerMm) || !isCutRadius(ball.radiusMm))
                 throw CLI::ValidationError(
                     name, "\"" + text + "\" is not x,y,z or x,y,z,r of a patient, r up to 100");
             balls.push_back(ball);

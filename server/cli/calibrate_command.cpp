@@ -133,7 +133,7 @@ Result<coverage::CalibrationOptions> optionsOf(const CalibrateArguments& argumen
     if (field) {
         options.field = *field;
         fmt::print("field: an ellipse about ({:.2f}, {:.2f}) of radii {:.2f} and {:.2f} pixels\n",
-                   field->centre.x, field->centre.y, field->radii.x, field->radii.y);
+                   field->center.x, field->center.y, field->radii.x, field->radii.y);
     } else if (field.error().kind == ErrorKind::noResult) {
         fmt::print("field: {}; taken to reach the corners\n", field.error().message);
     } else {
@@ -216,7 +216,7 @@ Result<coverage::Colonoscope> calibrateOn(const CalibrateArguments& arguments,
     scope.lens = calibration.lens;
     scope.pictureSize = options.pictureSize;
     const auto open = options.field.value_or(coverage::wholePicture(options.pictureSize));
-    scope.openCentre = open.centre, scope.openRadii = open.radii;
+    scope.openCenter = open.center, scope.openRadii = open.radii;
     scope.fieldDegrees = arguments.fieldDegrees.value_or(
         coverage::fieldWithin(calibration.lens, open, options.pictureSize));
     scope.nearestMm = arguments.depthMm[0], scope.farthestMm = arguments.depthMm[1];

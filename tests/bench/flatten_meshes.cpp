@@ -33,16 +33,16 @@ double outsideCoil(const glm::dvec3& at) {
     for (int turn = -1; turn <= 2; ++turn) {
         const double s = std::clamp(angle / (2.0 * std::numbers::pi) + turn, 0.0, turns);
         const double theta = 2.0 * std::numbers::pi * s;
-        const glm::dvec3 centre(coilMm * std::cos(theta), coilMm * std::sin(theta),
+        const glm::dvec3 center(coilMm * std::cos(theta), coilMm * std::sin(theta),
                                 pitchMm * (s - 0.5 * turns));
-        const double phi = std::atan2(at.z - centre.z, rho - coilMm);
+        const double phi = std::atan2(at.z - center.z, rho - coilMm);
         // The ends are half balls.
         const double relief = std::min(1.0, 20.0 * std::min(s, turns - s));
         const double folds =
             relief * std::pow(0.5 + 0.5 * std::cos(2.0 * std::numbers::pi * 12.0 * s), 4.0);
         const double taeniae = relief * (0.5 + 0.5 * std::cos(3.0 * phi));
         const double radius = 24.0 - 5.0 * folds * (1.0 - taeniae) - 2.0 * taeniae;
-        nearest = std::min(nearest, glm::distance(at, centre) - radius);
+        nearest = std::min(nearest, glm::distance(at, center) - radius);
     }
     return nearest;
 }
@@ -89,10 +89,10 @@ public:
             const double phi = std::remainder(2.399963 * n, 2.0 * std::numbers::pi) * 0.6;
             const double radius = 2.5 + 2.5 * ((n * 7) % 16) / 15.0;
             const glm::dvec3 out(std::cos(theta), std::sin(theta), 0.0), up(0.0, 0.0, 1.0);
-            const glm::dvec3 centre = 60.0 * out + glm::dvec3(0.0, 0.0, 75.0 * (s - 1.0));
+            const glm::dvec3 center = 60.0 * out + glm::dvec3(0.0, 0.0, 75.0 * (s - 1.0));
             const glm::dvec3 away = std::cos(phi) * out + std::sin(phi) * up;
-            balls_.push_back({centre + (25.0 + radius) * away, radius});
-            capsules_.push_back({centre + 15.0 * away, centre + (25.0 + radius) * away, 1.5});
+            balls_.push_back({center + (25.0 + radius) * away, radius});
+            capsules_.push_back({center + 15.0 * away, center + (25.0 + radius) * away, 1.5});
         }
         glm::dvec3 before(46.0, 0.0, 75.0);
         for (double mm = 0.0; mm <= 300.0; mm += 2.0) {
@@ -105,8 +105,8 @@ public:
     }
     double outside(const glm::dvec3& at) const {
         double nearest = std::numeric_limits<double>::max();
-        for (const auto& [centre, radius] : balls_)
-            nearest = std::min(nearest, glm::distance(at, centre) - radius);
+        for (const auto& [center, radius] : balls_)
+            nearest = std::min(nearest, glm::distance(at, center) - radius);
         for (const auto& [a, b, radius] : capsules_) {
             const glm::dvec3 along = b - a;
             const double share = std::clamp(
@@ -118,7 +118,7 @@ public:
 
 private:
     struct Ball {
-        glm::dvec3 centre;
+        glm::dvec3 center;
         double radius;
     };
     struct Capsule {

@@ -49,16 +49,16 @@ Result<std::vector<PhantomPolyp>> polypsOfPhantom(const std::string& file) {
     for (const phantom::Growth& growth : shape->growths()) {
         if (!growth.polyp()) continue;
         phantom::ColonShape::Nearby bare;
-        shape->findNearby(growth.centre, growth.reachMm() + 2.0, bare);
+        shape->findNearby(growth.center, growth.reachMm() + 2.0, bare);
         bare.growths.clear();
         const auto border = [shape, growth, bare](glm::dvec3 p) {
             // Beyond its reach nothing is known of what is near, and nothing is the polyp's.
-            const double beyond = glm::distance(p, growth.centre) - growth.reachMm() - 1.0;
+            const double beyond = glm::distance(p, growth.center) - growth.reachMm() - 1.0;
             if (beyond > 0.0) return 1.0 + beyond;
             return std::max(beyond, growth.distance(p) + shape->evaluate(p, bare).lumenMm);
         };
         const auto girth = [border, growth](glm::dvec3 p) {
-            return std::max(border(p), glm::dot(growth.centre - p, growth.inward));
+            return std::max(border(p), glm::dot(growth.center - p, growth.inward));
         };
         polyps.push_back({findings.findings[polyps.size()], border, girth});
     }

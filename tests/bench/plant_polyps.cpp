@@ -130,7 +130,7 @@ struct Polyp {
     std::uint64_t textureSeed = 0;
 
     double radiusMm() const { return 0.5 * diameterMm; }
-    glm::dvec3 centre() const {
+    glm::dvec3 center() const {
         return kind == Kind::pedunculated ? stalkMm * stalk : glm::dvec3(0, 0, 0.5 * heightMm);
     }
 };
@@ -250,8 +250,8 @@ bool massHolds(const Polyp& mass, glm::dvec3 p, double lumenMm) {
 
 bool pedunculatedHolds(const Polyp& polyp, glm::dvec3 p, double lumenMm) {
     constexpr double filletMm = 0.6, reachMm = 2.0;
-    const glm::dvec3 fromHead = p - polyp.centre();
-    const double stalk = phantom::capsule(p, glm::dvec3(0.0), polyp.centre(), polyp.stalkRadiusMm);
+    const glm::dvec3 fromHead = p - polyp.center();
+    const double stalk = phantom::capsule(p, glm::dvec3(0.0), polyp.center(), polyp.stalkRadiusMm);
     const double along = glm::dot(fromHead, polyp.stalk),
                  across = glm::length(fromHead - along * polyp.stalk),
                  half = polyp.headShare * polyp.radiusMm();
@@ -404,7 +404,7 @@ bool hasRoom(const Polyp& polyp, const Foot& foot, const Surroundings& around) {
     for (double mm = 1.5; mm < openMm; mm += 0.5)
         if (around.at(foot.patientOf({0, 0, mm})) < 0.4) return false;
     if (polyp.kind == Kind::pedunculated)
-        return around.at(foot.patientOf(polyp.centre())) > polyp.radiusMm() + 1.0;
+        return around.at(foot.patientOf(polyp.center())) > polyp.radiusMm() + 1.0;
     return around.at(foot.patientOf({0, 0, polyp.heightMm})) > 0.9 * polyp.heightMm;
 }
 
@@ -576,7 +576,7 @@ private:
         GrowthTruth truth;
         truth.kind = kindNames[std::size_t(polyp.kind)];
         truth.neoplastic = true;
-        truth.positionMm = foot.patientOf(polyp.centre());
+        truth.positionMm = foot.patientOf(polyp.center());
         truth.wallMm = foot.atMm;
         truth.diameterMm = polyp.diameterMm, truth.heightMm = polyp.heightMm;
         truth.densityHu = polyp.tissueHu - patient_.tissue.meanHu[int(Tissue::soft)];

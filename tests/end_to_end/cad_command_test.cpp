@@ -88,7 +88,7 @@ protected:
             onIt.push_back({(lumenMm - 0.3 * radius) * way, radius});
             growths.push_back({{"kind", polyp ? "sessile" : "untagged_stool"},
                                {"neoplastic", polyp},
-                               {"position_mm", placeJson(onIt.back().centreMm)},
+                               {"position_mm", placeJson(onIt.back().centerMm)},
                                {"wall_mm", placeJson(lumenMm * way)},
                                {"diameter_mm", 2.0 * radius}});
         }

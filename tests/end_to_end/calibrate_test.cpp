@@ -27,7 +27,7 @@ protected:
         coverage::Colonoscope scope = coverage::olympusCfQ160l();
         scope.lens.mu *= 0.6, scope.lens.mv *= 0.6, scope.lens.u0 *= 0.6, scope.lens.v0 *= 0.6;
         scope.pictureSize = {315, 264};
-        scope.openCentre *= 0.6, scope.openRadii *= 0.6;
+        scope.openCenter *= 0.6, scope.openRadii *= 0.6;
         const tests::BoardPainter painter(scope);
         const coverage::Board board{coverage::BoardPattern::dots, {7, 6}, 5.0};
         for (int n = 0; n < 3; ++n) {

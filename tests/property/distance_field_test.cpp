@@ -93,19 +93,19 @@ TEST(DistanceField, IsTheSameForAnyNumberOfThreads) {
 
 TEST(DistanceField, OfABallIsItsRadiusLessTheDistanceFromTheCentre) {
     const Grid grid = axisAlignedGrid({60, 80, 40}, {1.0, 0.75, 1.5});
-    const glm::dvec3 centre(29.5, 29.6, 29.2);
+    const glm::dvec3 center(29.5, 29.6, 29.2);
     const double radius = 24.0;
     Volume<std::uint8_t> mask(grid);
     for (std::size_t v = 0; v < grid.voxelCount(); ++v) {
         mask.writable()[v] =
-            glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(v)), centre) < radius;
+            glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(v)), center) < radius;
     }
     const Volume<float> distance = distanceToBoundaryMm(mask);
     const double diagonal = glm::length(grid.spacingMm());
     for (std::size_t v = 0; v < grid.voxelCount(); ++v) {
         if (!mask[v]) continue;
         const double depth =
-            radius - glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(v)), centre);
+            radius - glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(v)), center);
         ASSERT_GE(distance[v], depth);
         ASSERT_LE(distance[v], depth + diagonal);
     }

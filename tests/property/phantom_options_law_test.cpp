@@ -257,10 +257,10 @@ TEST(Diverticula, ArePouchesOfTheLumenThatJoinNothingElse) {
     for (const Diverticulum& pouch : with.shape.diverticula()) {
         EXPECT_GE(pouch.sacRadiusMm, 2.0);
         EXPECT_LE(pouch.sacRadiusMm, 4.5);
-        const ColonPoint inside = with.shape.evaluate(pouch.centre);
+        const ColonPoint inside = with.shape.evaluate(pouch.center);
         EXPECT_LT(inside.lumenMm, 0.0);
-        EXPECT_GT(without.shape.evaluate(pouch.centre).lumenMm, 0.0) << "outside the bare lumen";
-        EXPECT_LT(with.shape.evaluate(0.5 * (pouch.mouth + pouch.centre)).lumenMm, 0.3);
+        EXPECT_GT(without.shape.evaluate(pouch.center).lumenMm, 0.0) << "outside the bare lumen";
+        EXPECT_LT(with.shape.evaluate(0.5 * (pouch.mouth + pouch.center)).lumenMm, 0.3);
         EXPECT_GT(inside.arcMm, with.shape.path().rectumEndMm);
         sigmoid += inside.arcMm < sigmoidEnd;
     }
@@ -268,7 +268,7 @@ TEST(Diverticula, ArePouchesOfTheLumenThatJoinNothingElse) {
     // The same patient otherwise: growths and pools.
     ASSERT_EQ(with.shape.growths().size(), without.shape.growths().size());
     for (std::size_t n = 0; n < with.shape.growths().size(); ++n)
-        EXPECT_EQ(with.shape.growths()[n].centre, without.shape.growths()[n].centre);
+        EXPECT_EQ(with.shape.growths()[n].center, without.shape.growths()[n].center);
     for (std::size_t n = 0; n < with.fluid.pools.size(); ++n)
         EXPECT_EQ(with.fluid.pools[n].levelMm, without.fluid.pools[n].levelMm);
 }

@@ -26,9 +26,9 @@ TriMesh contoured(glm::ivec3 size, double noiseHu,
     Volume<std::int16_t> hu(grid);
     Volume<std::uint8_t> inside(grid);
     std::mt19937 random(5);
-    const glm::dvec3 centre = glm::dvec3(size - 1) * 0.5 * glm::dvec3(0.75, 0.75, 1.0);
+    const glm::dvec3 center = glm::dvec3(size - 1) * 0.5 * glm::dvec3(0.75, 0.75, 1.0);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
-        const glm::dvec3 p = glm::dvec3(grid.voxelAt(n)) * glm::dvec3(0.75, 0.75, 1.0) - centre;
+        const glm::dvec3 p = glm::dvec3(grid.voxelAt(n)) * glm::dvec3(0.75, 0.75, 1.0) - center;
         const double depth = depthMm(p);
         const double noise = noiseHu * (double(random() % 2001) / 1000.0 - 1.0);
         hu.writable()[n] = std::int16_t(-480.0 - 520.0 * std::tanh(depth / 0.9) + noise);
@@ -89,14 +89,14 @@ void expectLaws(const TriMesh& before, const TriMesh& after, double errorMm) {
     const auto vertices = tests::sortedDistances(before.vertices, toAfter);
     EXPECT_LE(vertices.back(), errorMm);
     EXPECT_LE(tests::sortedDistances(after.vertices, toBefore).back(), errorMm);
-    std::vector<glm::dvec3> centres;
+    std::vector<glm::dvec3> centers;
     for (const glm::ivec3& t : before.triangles) {
         const glm::dvec3 &a = before.vertices[t.x], &b = before.vertices[t.y],
                          &c = before.vertices[t.z];
-        centres.insert(centres.end(),
+        centers.insert(centers.end(),
                        {(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)});
     }
-    EXPECT_LE(tests::sortedDistances(centres, toAfter).back(), errorMm);
+    EXPECT_LE(tests::sortedDistances(centers, toAfter).back(), errorMm);
 
     // Between the samples nothing is promised, but little is lost.
     for (const auto& distances : {tests::sortedDistances(tests::samplesOn(before, 0.5), toAfter),

@@ -96,12 +96,12 @@ TEST(Streaks, OfTwoRodsOfMetalAreDarkBetweenThem) {
         if (std::hypot(std::abs(p.x) - 60.0, p.y) < 8.0) hu.writable()[n] = 8000.0f;
     }
     const Volume<float> streaks = streaksOf(hu, 0, 1, 0, {7, 0.0, true}, 0);
-    const auto mean = [&](glm::dvec2 centre, glm::dvec2 half) {
+    const auto mean = [&](glm::dvec2 center, glm::dvec2 half) {
         double sum = 0.0;
         int count = 0;
         for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
             const glm::dvec2 p(grid.patientFromVoxelPoint(grid.voxelAt(n)));
-            if (std::abs(p.x - centre.x) > half.x || std::abs(p.y - centre.y) > half.y) continue;
+            if (std::abs(p.x - center.x) > half.x || std::abs(p.y - center.y) > half.y) continue;
             sum += streaks[n], ++count;
         }
         return sum / count;

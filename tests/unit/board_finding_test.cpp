@@ -52,7 +52,7 @@ double errorOf(const BoardView& view, const std::vector<glm::dvec2>& truth) {
 /// Of points well within the open part and the picture: none of those may be missed.
 int wellShown(const Colonoscope& scope, const std::vector<glm::dvec2>& shown, double marginPixels) {
     return int(std::count_if(shown.begin(), shown.end(), [&](glm::dvec2 p) {
-        const glm::dvec2 in = (p - scope.openCentre) / (scope.openRadii - marginPixels);
+        const glm::dvec2 in = (p - scope.openCenter) / (scope.openRadii - marginPixels);
         return glm::dot(in, in) < 1.0 && p.x >= marginPixels && p.y >= marginPixels &&
                p.x <= scope.pictureSize.x - 1 - marginPixels &&
                p.y <= scope.pictureSize.y - 1 - marginPixels;

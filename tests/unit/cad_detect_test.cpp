@@ -44,7 +44,7 @@ std::vector<cad::Candidate> bodies(const BallColon& ball, int threads = 2) {
     std::vector<cad::Candidate> kept;
     for (auto& c : all)
         if (std::none_of(kept.begin(), kept.end(), [&](const cad::Candidate& k) {
-                return glm::distance(k.lesion.centreMm, c.lesion.centreMm) < 4.0;
+                return glm::distance(k.lesion.centerMm, c.lesion.centerMm) < 4.0;
             }))
             kept.push_back(std::move(c));
     return kept;
@@ -56,12 +56,12 @@ TEST(Detect, BodiesOnTheWallAreFoundWithTheirSize) {
     for (std::size_t n = 0; n < bumps.size(); ++n) {
         const cad::Lesion& lesion = found[n].lesion;
         const Bump& bump = bumps[n];
-        EXPECT_LT(glm::distance(lesion.centreMm, bump.centreMm), 0.6 * bump.radiusMm);
+        EXPECT_LT(glm::distance(lesion.centerMm, bump.centerMm), 0.6 * bump.radiusMm);
         // The rounded crease belongs to the foot.
         EXPECT_NEAR(lesion.diameter.mm, 2.0 * bump.radiusMm, 1.0);
-        const glm::dvec3 outward = glm::normalize(bump.centreMm);
+        const glm::dvec3 outward = glm::normalize(bump.centerMm);
         EXPECT_LT(glm::dot(lesion.axis, outward), -0.95) << "away from the wall";
-        const double height = lumenMm - (glm::length(bump.centreMm) - bump.radiusMm);
+        const double height = lumenMm - (glm::length(bump.centerMm) - bump.radiusMm);
         EXPECT_NEAR(lesion.heightMm, height, 1.0);
         // Its voxels are tissue, and as many as its volume says.
         const BallColon ball;
@@ -142,9 +142,9 @@ TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
     ASSERT_EQ(shifted.size(), plain.size());
     for (std::size_t n = 0; n < plain.size(); ++n) {
         const cad::Lesion& lesion = plain[n].lesion;
-        EXPECT_LT(glm::distance(turned[n].lesion.centreMm, quarter * lesion.centreMm), 0.05);
-        EXPECT_LT(glm::distance(shifted[n].lesion.centreMm,
-                                lesion.centreMm + 0.75 * glm::dvec3(3, -2, 4)),
+        EXPECT_LT(glm::distance(turned[n].lesion.centerMm, quarter * lesion.centerMm), 0.05);
+        EXPECT_LT(glm::distance(shifted[n].lesion.centerMm,
+                                lesion.centerMm + 0.75 * glm::dvec3(3, -2, 4)),
                   0.05);
         for (const auto* other : {&turned, &shifted}) {
             const cad::Lesion& same = (*other)[n].lesion;
@@ -157,7 +157,7 @@ TEST(Detect, TurnsShiftsAndThreadsChangeNothing) {
     ASSERT_EQ(alone.size(), plain.size());
     for (std::size_t n = 0; n < plain.size(); ++n) {
         EXPECT_EQ(alone[n].features, plain[n].features);
-        EXPECT_EQ(alone[n].lesion.centreMm, plain[n].lesion.centreMm);
+        EXPECT_EQ(alone[n].lesion.centerMm, plain[n].lesion.centerMm);
         EXPECT_EQ(alone[n].lesion.voxels, plain[n].lesion.voxels);
     }
 }
@@ -187,7 +187,7 @@ TEST(Detect, OtherLevelsOfWhatIsNotWorthTheLookNeedNotBeMeasured) {
     ASSERT_EQ(all.size(), some.size());
     for (std::size_t n = 0; n < all.size(); ++n) {
         EXPECT_EQ(all[n].probability, some[n].probability);
-        EXPECT_EQ(all[n].lesion.centreMm, some[n].lesion.centreMm);
+        EXPECT_EQ(all[n].lesion.centerMm, some[n].lesion.centerMm);
     }
 }
 
@@ -213,7 +213,7 @@ TEST(Detect, AFeatureTellsWhatStoodBeforeAPlace) {
     std::vector<int> count(bumps.size(), 0);
     for (const cad::Candidate& c : found) {
         for (std::size_t n = 0; n < bumps.size(); ++n) {
-            if (glm::distance(c.lesion.centreMm, bumps[n].centreMm) > 3.0) continue;
+            if (glm::distance(c.lesion.centerMm, bumps[n].centerMm) > 3.0) continue;
             EXPECT_NEAR(c.features[cad::featureNumber("outside_density")], told(before[n]), 0.5);
             ++count[n];
         }
@@ -227,14 +227,14 @@ TEST(Detect, AFeatureTellsBubblesInside) {
     BallColon ball;
     const auto features = [&](std::size_t bump) {
         for (const cad::Candidate& c : bodies(ball))
-            if (glm::distance(c.lesion.centreMm, bumps[bump].centreMm) < 3.0) return c.features;
+            if (glm::distance(c.lesion.centerMm, bumps[bump].centerMm) < 3.0) return c.features;
         ADD_FAILURE() << "no candidate at bump " << bump;
         return cad::FeatureVector{};
     };
     const auto solid = features(0), other = features(1);
     for (std::size_t n = 0; n < ball.hu.grid().voxelCount(); ++n) {
         const glm::dvec3 p = ball.hu.grid().patientFromVoxelPoint(ball.hu.grid().voxelAt(n));
-        if (glm::distance(p, bumps[0].centreMm) < 1.5) ball.hu.writable()[n] = -300;
+        if (glm::distance(p, bumps[0].centerMm) < 1.5) ball.hu.writable()[n] = -300;
     }
     const auto crumbly = features(0), beside = features(1);
     EXPECT_GT(crumbly[cad::featureNumber("dip_p90")], crumbly[cad::featureNumber("dip_mean")]);
@@ -256,12 +256,12 @@ TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
         for (std::size_t n = 0; n < ball.lumen.grid().voxelCount(); ++n) {
             const glm::dvec3 p =
                 ball.lumen.grid().patientFromVoxelPoint(glm::dvec3(ball.lumen.grid().voxelAt(n)));
-            if (ball.lumen[n] && glm::distance(p, bumps[0].centreMm) < 9.0)
+            if (ball.lumen[n] && glm::distance(p, bumps[0].centerMm) < 9.0)
                 ball.lumen.writable()[n] = std::uint8_t(label);
         }
         const auto found = bodies(ball);
         ASSERT_EQ(found.size(), 1u);
-        EXPECT_LT(glm::distance(found[0].lesion.centreMm, bumps[1].centreMm), bumps[1].radiusMm);
+        EXPECT_LT(glm::distance(found[0].lesion.centerMm, bumps[1].centerMm), bumps[1].radiusMm);
         // The reader is told.
         const auto evidence = cad::gatherEvidence(ball.colon(), {});
         const Findings findings = cad::findingsOf(ball.colon(), evidence, {}, {});
@@ -272,14 +272,14 @@ TEST(Detect, WhatNobodyHasSeenMakesNoCandidate) {
     // A wall that was set up again counts as little.
     const BallColon whole;
     cad::PreparedColon colon = whole.colon();
-    colon.rebuilt = {{bumps[1].centreMm, 20.0, true}};
+    colon.rebuilt = {{bumps[1].centerMm, 20.0, true}};
     const auto evidence = cad::gatherEvidence(colon, {});
     const auto others = cad::findCandidates(colon, evidence, nullptr, shapeAlone());
     EXPECT_TRUE(std::ranges::any_of(others, [](const cad::Candidate& c) {
-        return glm::distance(c.lesion.centreMm, bumps[0].centreMm) < bumps[0].radiusMm;
+        return glm::distance(c.lesion.centerMm, bumps[0].centerMm) < bumps[0].radiusMm;
     }));
     for (const auto& c : others)
-        EXPECT_GT(glm::distance(c.lesion.centreMm, bumps[1].centreMm), 2.0);
+        EXPECT_GT(glm::distance(c.lesion.centerMm, bumps[1].centerMm), 2.0);
 }
 
 // The ball's wall, its edge as wide as asked, and brighter behind gas by some HU.
@@ -455,7 +455,7 @@ TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) 
     ball.flat.cameras = {{{0, -10, 0}, 0.0}, {{0, 10, 0}, 20.0}};
     ball.flat.sourceTriangle = {0, 1};
     cad::Candidate candidate;
-    candidate.lesion.topMm = {25, 5, 0}, candidate.lesion.centreMm = {27, 5, 0};
+    candidate.lesion.topMm = {25, 5, 0}, candidate.lesion.centerMm = {27, 5, 0};
     candidate.probability = 1.0;
     auto colon = ball.colon();
     auto evidence = cad::gatherEvidence(colon, {});
@@ -483,7 +483,7 @@ TEST(Detect, FeaturesOfAxisAndRegionTakeThemFromTheFlatMap) {
         const auto candidates =
             cad::findCandidates(colon, cad::gatherEvidence(colon, {}), nullptr, {});
         for (const cad::Candidate& each : candidates)
-            if (glm::distance(each.lesion.centreMm, bumps[1].centreMm) < 4.0)
+            if (glm::distance(each.lesion.centerMm, bumps[1].centerMm) < 4.0)
                 return each.features[name.number];
         return NAN;
     };

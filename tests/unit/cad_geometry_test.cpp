@@ -56,21 +56,21 @@ cad::SmoothScan wholeScan(const Volume<std::int16_t>& volume, double sigmaMm) {
 TEST(SmoothScan, KeepsTheDerivativesOfAQuadraticField) {
     // Smoothing adds a constant to it and leaves gradient and Hessian.
     const Grid grid = turnedGrid();
-    const glm::dvec3 centre = middleOf(grid);
+    const glm::dvec3 center = middleOf(grid);
     const glm::dmat3 hessian(6, 1, -2, 1, -4, 3, -2, 3, 8);
     const glm::dvec3 slope(20, -10, 15);
     const auto field = [&](glm::dvec3 p) {
-        const glm::dvec3 q = p - centre;
+        const glm::dvec3 q = p - center;
         return 10.0 * (glm::dot(slope, q) + 0.5 * glm::dot(q, hessian * q));
     };
     for (const double sigma : {0.0, 1.0, 1.6}) {
         const cad::SmoothScan scan = wholeScan(sampled(grid, field), sigma);
         for (const glm::dvec3 off : {glm::dvec3(0.0), glm::dvec3(1.3, -0.7, 0.4)}) {
-            const cad::Derivatives found = scan.derivatives(centre + off);
+            const cad::Derivatives found = scan.derivatives(center + off);
             EXPECT_LT(glm::length(found.gradient - 10.0 * (slope + hessian * off)), 1.5);
             for (int c = 0; c < 3; ++c)
                 EXPECT_LT(glm::length(found.hessian[c] - 10.0 * hessian[c]), 1.5);
-            EXPECT_LT(glm::length(scan.gradient(centre + off) - found.gradient), 25.0);
+            EXPECT_LT(glm::length(scan.gradient(center + off) - found.gradient), 25.0);
         }
     }
 }
@@ -563,7 +563,7 @@ TEST(Lesion, HasItsCentreInItsBodyEvenWhereThatCancels) {
         const auto lesion = lesionOf(middle);
         (lesion->volumeMm3 > 0.0 ? high : low) = middle;
         const glm::dvec3 wall(Plateau::radiusMm - std::max(0.0, middle), 0.0, 0.0);
-        EXPECT_LT(glm::distance(lesion->centreMm, wall), 2.0)
+        EXPECT_LT(glm::distance(lesion->centerMm, wall), 2.0)
             << middle << " mm high: " << lesion->volumeMm3 << " mm³";
     }
 }
@@ -607,14 +607,14 @@ TEST(StandingHeight, OfALongLesionIsNotItsLength) {
 // A ball on a stalk, upright on a flat wall.
 struct Mushroom {
     static constexpr double headMm = 4.0, stalkMm = 1.5, discMm = 22.0;
-    double centreMm = 9.0;  // of the ball, over the wall
+    double centerMm = 9.0;  // of the ball, over the wall
     cad::WallEvidence evidence = {};
 
     // Of the tissue's surface, inwards.
     double depth(glm::dvec3 p) const {
         const double r = std::hypot(p.x, p.y);
-        return std::max({-p.z, headMm - glm::distance(p, {0.0, 0.0, centreMm}),
-                         p.z < centreMm ? stalkMm - r : -1e9});
+        return std::max({-p.z, headMm - glm::distance(p, {0.0, 0.0, centerMm}),
+                         p.z < centerMm ? stalkMm - r : -1e9});
     }
     void make() {
         const Grid grid = axisAlignedGrid({80, 80, 40}, {0.6, 0.6, 0.6}, {-23.7, -23.7, -4.0});
@@ -624,13 +624,13 @@ struct Mushroom {
         std::vector<glm::dvec2> outline;  // radius, z
         for (double r = discMm; r > stalkMm; r -= 0.4)
             outline.push_back({r, 0.0});
-        const double neck = centreMm - std::sqrt(headMm * headMm - stalkMm * stalkMm);
+        const double neck = centerMm - std::sqrt(headMm * headMm - stalkMm * stalkMm);
         for (double z = 0.0; z < neck; z += 0.4)
             outline.push_back({stalkMm, z});
         const double from = std::asin(stalkMm / headMm);
         for (int n = 0; n <= 28; ++n) {
             const double t = from + (std::numbers::pi - 0.02 - from) * n / 28.0;
-            outline.push_back({headMm * std::sin(t), centreMm - headMm * std::cos(t)});
+            outline.push_back({headMm * std::sin(t), centerMm - headMm * std::cos(t)});
         }
         constexpr int around = 72;
         TriMesh mesh;
@@ -654,23 +654,23 @@ struct Mushroom {
     cad::Patch head() const {
         cad::Patch patch;
         for (std::uint32_t v = 0; v < evidence.samples.mesh.vertices.size(); ++v)
-            if (evidence.samples.mesh.vertices[v].z > centreMm - 0.8 * headMm)
+            if (evidence.samples.mesh.vertices[v].z > centerMm - 0.8 * headMm)
                 patch.samples.push_back(v);
         return patch;
     }
 };
 
 TEST(StandingHeight, OfAHeadOnAStalkHoldsTheStalk) {
-    for (const double centre : {7.0, 9.0, 12.0}) {
-        Mushroom mushroom{.centreMm = centre};
+    for (const double center : {7.0, 9.0, 12.0}) {
+        Mushroom mushroom{.centerMm = center};
         mushroom.make();
         const auto lesion = lesionOf(mushroom.evidence, mushroom.head());
         ASSERT_TRUE(lesion);
         EXPECT_TRUE(cad::standsOnStalk(*lesion));
-        const double height = centre + Mushroom::headMm;
-        EXPECT_NEAR(standingOf(mushroom.evidence, *lesion), height, 0.5) << centre;
+        const double height = center + Mushroom::headMm;
+        EXPECT_NEAR(standingOf(mushroom.evidence, *lesion), height, 0.5) << center;
         // Its base, a film across the stalk, is no wall.
-        EXPECT_LT(lesion->heightMm, 2.0 * Mushroom::headMm + 2.5) << centre;
+        EXPECT_LT(lesion->heightMm, 2.0 * Mushroom::headMm + 2.5) << center;
     }
 }
 
@@ -699,16 +699,16 @@ TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
     const Grid grid = turnedGrid();
     const double radius = 6.0;
     TriMesh body = sphere(radius, 24);
-    const glm::dvec3 centre = middleOf(grid) + glm::dvec3(0.21, -0.13, 0.37);
+    const glm::dvec3 center = middleOf(grid) + glm::dvec3(0.21, -0.13, 0.37);
     for (glm::dvec3& v : body.vertices)
-        v += centre;
+        v += center;
     Volume<std::uint8_t> held(grid, 0);
     for (const VoxelRun& run : cad::voxelsWithin(body, grid))
         for (int n = 0; n < run.count; ++n)
             ++held.writable()[grid.index(run.first + glm::ivec3(n, 0, 0))];
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const double mm =
-            glm::distance(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), centre);
+            glm::distance(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), center);
         if (mm < radius - 0.05) {
             EXPECT_EQ(held[n], 1) << mm;
         }

@@ -405,7 +405,7 @@ TEST(Examples, AreLearntFromWhereTheyShowAPolypWhole) {
     truth[1].neoplastic = false, truth[1].kind = "hyperplastic";
     const auto candidate = [](double x, double diameterMm) {
         cad::Candidate made;
-        made.lesion.centreMm = {x, 0, 0};
+        made.lesion.centerMm = {x, 0, 0};
         made.lesion.diameter.mm = diameterMm, made.lesion.areaMm2 = diameterMm * diameterMm;
         return made;
     };
@@ -427,7 +427,7 @@ TEST(Examples, OfOtherLevelsAreNotLearntFrom) {
     truth[0].diameterMm = 12.0;
     const auto candidate = [](double x, double diameterMm, int levelOf) {
         cad::Candidate made;
-        made.lesion.centreMm = {x, 0, 0}, made.levelOf = levelOf;
+        made.lesion.centerMm = {x, 0, 0}, made.levelOf = levelOf;
         made.lesion.diameter.mm = diameterMm, made.lesion.areaMm2 = diameterMm * diameterMm;
         return made;
     };
@@ -710,7 +710,7 @@ TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
     std::vector<cad::Candidate> candidates(3);
     for (std::size_t n = 0; n < candidates.size(); ++n) {
         cad::Candidate& candidate = candidates[n];
-        candidate.lesion.centreMm = {-12.5 - double(n), 3.25, -640.0};
+        candidate.lesion.centerMm = {-12.5 - double(n), 3.25, -640.0};
         candidate.lesion.diameter.mm = 6.125 + double(n);
         candidate.lesion.areaMm2 = 33.5;
         candidate.lesion.patch.by = n == 0 ? cad::Generator::texture : cad::Generator::broadShape;
@@ -724,7 +724,7 @@ TEST(CandidateTable, ReadsBackWhatLearningAndJudgingUse) {
     ASSERT_EQ(read->size(), candidates.size());
     for (std::size_t n = 0; n < candidates.size(); ++n) {
         const cad::Lesion &was = candidates[n].lesion, &is = (*read)[n].lesion;
-        EXPECT_EQ(is.centreMm, was.centreMm);
+        EXPECT_EQ(is.centerMm, was.centerMm);
         EXPECT_EQ(is.diameter.mm, was.diameter.mm);
         EXPECT_EQ(is.areaMm2, was.areaMm2);
         EXPECT_EQ(is.patch.by, was.patch.by);

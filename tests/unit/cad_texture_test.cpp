@@ -146,7 +146,7 @@ TEST(TextureStencil, NeighboursAreThoseWithinTwoStepsAlongTheStripsAxes) {
 TEST(Detect, TextureFindsADenseCoreThatShapeAloneDoesNotTellFromOthers) {
     // Two bumps alike; the first is denser inside.
     BallColon ball;
-    const glm::dvec3 dense = tests::bumps[0].centreMm;
+    const glm::dvec3 dense = tests::bumps[0].centerMm;
     const Grid& grid = ball.hu.grid();
     for (std::size_t n = 0; n < grid.voxelCount(); ++n)
         if (glm::distance(grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n))), dense) < 2.6)
@@ -165,7 +165,7 @@ TEST(Detect, TextureFindsADenseCoreThatShapeAloneDoesNotTellFromOthers) {
     });
     ASSERT_FALSE(candidates.empty());
     for (const cad::Candidate& candidate : candidates) {
-        EXPECT_LT(glm::distance(candidate.lesion.centreMm, dense), 4.0);
+        EXPECT_LT(glm::distance(candidate.lesion.centerMm, dense), 4.0);
     }
 }
 

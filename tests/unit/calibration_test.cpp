@@ -50,7 +50,7 @@ std::vector<BoardView> viewsOf(const FisheyeLens& lens, glm::ivec2 size, double 
 TEST(Calibration, TheSourcesParametersComeBackWithinTheirStandardErrors) {
     const Colonoscope scope = olympusCfQ160l();
     CalibrationOptions options = optionsOf("kannala-brandt", scope.pictureSize);
-    options.field = FieldEllipse{scope.openCentre, scope.openRadii};
+    options.field = FieldEllipse{scope.openCenter, scope.openRadii};
     options.fieldDegrees = scope.fieldDegrees;
     options.pixelsPerMm = scope.lens.mu;
     const auto truth = numbersOf(scope.lens);

@@ -8,8 +8,8 @@ using namespace haustra::test;
 
 namespace {
 
-double distanceToSphere(glm::dvec3 p, glm::dvec3 centre, double radius) {
-    return radius - glm::distance(p, centre);
+double distanceToSphere(glm::dvec3 p, glm::dvec3 center, double radius) {
+    return radius - glm::distance(p, center);
 }
 
 TEST(Cleansing, ScanWithoutTaggingComesBackUnchanged) {

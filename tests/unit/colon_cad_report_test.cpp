@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 // A ball of voxels about a place.
-std::vector<VoxelRun> ball(const Grid& grid, glm::dvec3 centreMm, double radiusMm) {
+std::vector<VoxelRun> ball(const Grid& grid, glm::dvec3 centerMm, double radiusMm) {
     std::vector<VoxelRun> runs;
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const glm::ivec3 v = grid.voxelAt(n);
-        if (glm::distance(grid.patientFromVoxelPoint(v), centreMm) > radiusMm) continue;
+        if (glm::distance(grid.patientFromVoxelPoint(v), centerMm) > radiusMm) continue;
         const bool next = !runs.empty() && runs.back().first.y == v.y &&
                           runs.back().first.z == v.z &&
                           runs.back().first.x + runs.back().count == v.x;
@@ -31,14 +31,14 @@ std::vector<VoxelRun> ball(const Grid& grid, glm::dvec3 centreMm, double radiusM
     return runs;
 }
 
-Finding finding(const Grid& grid, glm::dvec3 centreMm, double score) {
-    Finding finding{centreMm, 6.125, score, "sessile"};
-    finding.wallMm = centreMm + glm::dvec3(0.0, 3.0, 0.0);
-    finding.diameterEndsMm = {centreMm - glm::dvec3(3.0625, 0, 0),
-                              centreMm + glm::dvec3(3.0625, 0, 0)};
+Finding finding(const Grid& grid, glm::dvec3 centerMm, double score) {
+    Finding finding{centerMm, 6.125, score, "sessile"};
+    finding.wallMm = centerMm + glm::dvec3(0.0, 3.0, 0.0);
+    finding.diameterEndsMm = {centerMm - glm::dvec3(3.0625, 0, 0),
+                              centerMm + glm::dvec3(3.0625, 0, 0)};
     finding.heightMm = 2.5, finding.arcMm = 412.375;
     finding.segment = ColonSegment::sigmoid;
-    finding.voxels = ball(grid, centreMm, 2.0);
+    finding.voxels = ball(grid, centerMm, 2.0);
     return finding;
 }
 
@@ -237,11 +237,11 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
         EXPECT_EQ(named(feature, "Algorithm Name")->value, "phantoms-1");
         EXPECT_EQ(named(feature, "Algorithm Version")->value,
                   "haustra 1.2.3; model's SHA-256 " + std::string(64, 'a'));
-        const Item* centre = named(feature, "Center");
-        ASSERT_TRUE(centre);
-        EXPECT_EQ(centre->value, "POINT");
-        EXPECT_EQ(centre->relation, "HAS PROPERTIES");
-        EXPECT_EQ(toThousandths(centre->places.at(0)), is.positionMm);
+        const Item* center = named(feature, "Center");
+        ASSERT_TRUE(center);
+        EXPECT_EQ(center->value, "POINT");
+        EXPECT_EQ(center->relation, "HAS PROPERTIES");
+        EXPECT_EQ(toThousandths(center->places.at(0)), is.positionMm);
         EXPECT_EQ(std::stod(named(feature, "Certainty of Feature")->value), 100.0 * is.score);
         EXPECT_EQ(std::stod(named(feature, "Diameter")->value), is.diameterMm);
         EXPECT_EQ(named(feature, "Finding Site") != nullptr, is.segment.has_value());
@@ -466,7 +466,7 @@ TEST_F(ColonCadReport, WhatCannotBeReferredToIsRefused) {
 TEST(VoxelEllipsoid, OfABallIsTheBall) {
     const Grid grid = axisAlignedGrid({40, 40, 40}, {0.5, 0.5, 0.5}, {0, 0, 0});
     const Ellipsoid e = ellipsoidOf(ball(grid, {10, 9, 8}, 6.0), grid);
-    EXPECT_LT(glm::distance(e.centreMm, glm::dvec3(10, 9, 8)), 1e-9);
+    EXPECT_LT(glm::distance(e.centerMm, glm::dvec3(10, 9, 8)), 1e-9);
     for (const glm::dvec3& axis : e.halfAxesMm)
         EXPECT_NEAR(glm::length(axis), 6.0, 0.1);
 }
@@ -476,7 +476,7 @@ TEST(VoxelEllipsoid, FollowsTheGridAndItsBoxes) {
     grid = tests::rotated(grid, tests::rotation(0.4, -0.3));
     const VoxelRun run{{1, 2, 3}, 4};
     const Ellipsoid e = ellipsoidOf(std::span(&run, 1), grid);
-    EXPECT_LT(glm::distance(e.centreMm, grid.patientFromVoxelPoint({2.5, 2, 3})), 1e-9);
+    EXPECT_LT(glm::distance(e.centerMm, grid.patientFromVoxelPoint({2.5, 2, 3})), 1e-9);
     const std::array<double, 3> sides{4.0, 3.0, 2.0};
     const std::array<int, 3> gridAxis{0, 2, 1};
     for (std::size_t n = 0; n < 3; ++n) {

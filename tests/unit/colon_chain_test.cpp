@@ -29,7 +29,7 @@ ChainGraph row(double collapseLogOdds) {
     ChainGraph graph;
     for (int n = 0; n < 12; ++n) {
         graph.nodes.push_back(piece(120.0, n == 0 ? 0.0 : -15.0));
-        graph.nodes.back().centreMm = {0.0, 0.0, 120.0 * n};
+        graph.nodes.back().centerMm = {0.0, 0.0, 120.0 * n};
         if (n == 0) continue;
         const bool closed = n == 3;
         graph.junctions.push_back(closed

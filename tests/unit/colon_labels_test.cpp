@@ -125,7 +125,7 @@ TEST(ColonLabels, WhatIsFilledAtALevelOpensIntoNoOtherLoop) {
         level.columns.push_back({{x, fluidTop - gap - 1, 20}, {x, fluidTop, 20}});
     scene.contents.levels.push_back(level);
     const auto isOther = [&](std::int32_t piece) {
-        return scene.cut.pieces[std::size_t(piece)].centre.x >= firstOfOther;
+        return scene.cut.pieces[std::size_t(piece)].center.x >= firstOfOther;
     };
     chainUp(scene, walls, [&](const Orifice& o) { return isOther(o.a) == isOther(o.b); });
     const ColonLabels laid = labelsOf(scene);

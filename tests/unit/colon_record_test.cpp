@@ -118,7 +118,7 @@ TEST(ColonRecord, PiecesReadBack) {
     ASSERT_EQ(pieces->size(), record.pieces.size());
     for (std::size_t n = 0; n < pieces->size(); ++n) {
         EXPECT_EQ((*pieces)[n].part, record.pieces[n].part);
-        EXPECT_EQ((*pieces)[n].centreMm, record.pieces[n].centreMm);
+        EXPECT_EQ((*pieces)[n].centerMm, record.pieces[n].centerMm);
         EXPECT_EQ((*pieces)[n].radiusMm, record.pieces[n].radiusMm);
     }
     EXPECT_FALSE(piecesOfQuality("{\"pieces\":[{\"part\":\"spleen\"}]}"));

@@ -52,7 +52,7 @@ Phantom bent(double closedFromMm, double closedToMm) {
 
 ColonPiece pieceAt(double arcMm) {
     ColonPiece piece;
-    piece.centreMm = axisAt(arcMm), piece.radiusMm = tubeRadiusMm, piece.lengthMm = 20.0;
+    piece.centerMm = axisAt(arcMm), piece.radiusMm = tubeRadiusMm, piece.lengthMm = 20.0;
     return piece;
 }
 
@@ -62,7 +62,7 @@ ColonRecord chainOf(const std::vector<double>& arcsMm) {
         record.pieces.push_back(pieceAt(arcsMm[n]));
         if (n > 0) {
             ColonJunction junction;
-            junction.placeMm = 0.5 * (record.pieces[n - 1].centreMm + record.pieces[n].centreMm);
+            junction.placeMm = 0.5 * (record.pieces[n - 1].centerMm + record.pieces[n].centerMm);
             record.junctions.push_back(junction);
         }
     }
@@ -110,7 +110,7 @@ TEST(ColonScore, ABridgeInAnOpenColonAndAPieceOfOtherBowelAreWrong) {
     const Phantom truth = bent(0.0, 0.0);
     ColonRecord record = chainOf({10, 35, 60});
     record.junctions[0].kind = JunctionKind::collapse;
-    record.pieces[2].centreMm = {45.0, 5.0, 90.0};
+    record.pieces[2].centerMm = {45.0, 5.0, 90.0};
     const ColonScore score = scoreColon(truth, truth.lumen, truth.centerline, record, {});
     ASSERT_EQ(score.wrongSteps.size(), 2u);
     EXPECT_EQ(score.wrongSteps[0].kind, Kind::bridge);

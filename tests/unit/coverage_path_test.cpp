@@ -82,11 +82,11 @@ TEST(CornerPath, HugsTheCornerAndKeepsItsDistance) {
     }
     EXPECT_LT(nearest, tipMm + spacingMm) << "it touches the corner's inner side";
     // A tight string around the inner side of the bend; steps between voxels go round by up to 8 %.
-    const double inner = bendMm - (tube.radiusMm - tipMm), toCentre = std::hypot(60.0, bendMm);
+    const double inner = bendMm - (tube.radiusMm - tipMm), toCenter = std::hypot(60.0, bendMm);
     const double wrapped = 2.0 * std::numbers::pi -
-                           std::acos(-2.0 * 60.0 * bendMm / (toCentre * toCentre)) -
-                           2.0 * std::acos(inner / toCentre);
-    const double string = inner * wrapped + 2.0 * std::sqrt(toCentre * toCentre - inner * inner);
+                           std::acos(-2.0 * 60.0 * bendMm / (toCenter * toCenter)) -
+                           2.0 * std::acos(inner / toCenter);
+    const double string = inner * wrapped + 2.0 * std::sqrt(toCenter * toCenter - inner * inner);
     EXPECT_GT(found->path.lengthMm(), string - 3.0);
     EXPECT_LT(found->path.lengthMm(), 1.09 * string);
     EXPECT_GT(tube.line().lengthMm(), 1.09 * string);

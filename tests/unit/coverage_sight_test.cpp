@@ -154,7 +154,7 @@ TEST(CoverageSight, AFieldWiderThanAHalfSpaceLosesNothing) {
     wide.lens.mu = wide.lens.mv = 8.0;
     wide.pictureSize = {400, 400};
     wide.lens.u0 = wide.lens.v0 = 199.5;
-    wide.openCentre = {199.5, 199.5};
+    wide.openCenter = {199.5, 199.5};
     wide.openRadii = {170.0, 160.0};
     wide.fieldDegrees = 235.0;
     const Eyepiece eyepiece = Eyepiece::of(wide);

@@ -187,9 +187,9 @@ TEST(DicomTransferSyntax, EnhancedMultiFrameInJpeg2000) {
         const auto slice = imported->scan.hu.voxels().subspan(k * plane, plane);
         // writeEnhanced gives slice k the intercept −10 k; CT1's own is −1024, CT2's is 0.
         const int shift = int(10 * k);
-        const int centre = int(256 * 512 + 256);
-        const int stored = slice[std::size_t(centre)] + shift;
-        if (stored == first->scan.hu[std::size_t(centre)] + 1024) {
+        const int center = int(256 * 512 + 256);
+        const int stored = slice[std::size_t(center)] + shift;
+        if (stored == first->scan.hu[std::size_t(center)] + 1024) {
             ++firsts;
             continue;
         }

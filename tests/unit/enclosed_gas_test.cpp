@@ -18,8 +18,8 @@ namespace {
 
 using Solid = std::function<bool(glm::dvec3)>;
 
-Solid ball(glm::dvec3 centre, double radiusMm) {
-    return [=](glm::dvec3 p) { return glm::distance(p, centre) < radiusMm; };
+Solid ball(glm::dvec3 center, double radiusMm) {
+    return [=](glm::dvec3 p) { return glm::distance(p, center) < radiusMm; };
 }
 
 /// A tube of lumen along z through the grid's middle, and bodies of gas in or beside it.
@@ -47,9 +47,9 @@ struct Scene {
         paint(tube(), is, label, 0);
     }
     /// Gas behind a wall of its own.
-    void paintBalloon(glm::dvec3 centre, double radiusMm, std::int32_t piece = 1) {
-        paint(ball(centre, radiusMm + wallMm), Content::tissue, LumenLabel::outside);
-        paint(ball(centre, radiusMm), Content::gas, LumenLabel::outside, piece);
+    void paintBalloon(glm::dvec3 center, double radiusMm, std::int32_t piece = 1) {
+        paint(ball(center, radiusMm + wallMm), Content::tissue, LumenLabel::outside);
+        paint(ball(center, radiusMm), Content::gas, LumenLabel::outside, piece);
     }
     std::vector<EnclosedGas> takeIn(int threads = 2) {
         Volume<std::uint8_t> gas(grid);
@@ -102,11 +102,11 @@ TEST(EnclosedGas, ABalloonInTheLumenIsLumenWithItsWall) {
 TEST(EnclosedGas, ABoreThroughABalloonAndTheWallThatItSitsOnLeaveIt) {
     Scene scene;
     scene.paintTube();
-    const glm::dvec3 centre = scene.middle + glm::dvec3(5.0, 0.0, 0.0);
-    scene.paintBalloon(centre, 13.5);
+    const glm::dvec3 center = scene.middle + glm::dvec3(5.0, 0.0, 0.0);
+    scene.paintBalloon(center, 13.5);
     const auto shaft = [&](double radiusMm) {
         return [=](glm::dvec3 p) {
-            return glm::distance(glm::dvec2(p), glm::dvec2(centre)) < radiusMm;
+            return glm::distance(glm::dvec2(p), glm::dvec2(center)) < radiusMm;
         };
     };
     scene.paint(shaft(4.5), Content::tissue, LumenLabel::outside);

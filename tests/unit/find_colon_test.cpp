@@ -158,8 +158,8 @@ TEST(FindColon, IsTheColonWithItsFluidAndNothingElse) {
     EXPECT_EQ(found->record.pieces.size(), found->record.junctions.size() + 1);
     for (const ColonJunction& junction : found->record.junctions)
         EXPECT_EQ(junction.kind, JunctionKind::openLumen);
-    EXPECT_LT(found->record.pieces.front().centreMm.z, 150.0);
-    EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
+    EXPECT_LT(found->record.pieces.front().centerMm.z, 150.0);
+    EXPECT_LT(found->record.pieces.back().centerMm.x, 110.0) << "the cecum lies on the right";
     double axisMm = colon().front().radiusMm + colon().back().radiusMm;
     for (const Capsule& c : colon())
         axisMm += glm::distance(c.a, c.b);
@@ -307,7 +307,7 @@ TEST(FindColon, TellsMetal) {
     Drawing drawing = Drawing::supine();
     const CutBall hip{{60, 180, 40}, 15.0};
     drawing.paint(3071,
-                  [&](glm::dvec3 p) { return glm::distance(p, hip.centreMm) < hip.radiusMm; });
+                  [&](glm::dvec3 p) { return glm::distance(p, hip.centerMm) < hip.radiusMm; });
     ColonOptions options;
     for (const bool cut : {false, true}) {
         if (cut) options.edits.cuts = {hip};
@@ -484,7 +484,7 @@ TEST(FindColonInMask, NeedsNoScan) {
     EXPECT_GT(diceWithDrawing(*found), 0.995);
     EXPECT_EQ(found->gravity, glm::dvec3(0.0));
     EXPECT_EQ(found->record.pieces.front().part, ColonPart::rectum);
-    EXPECT_LT(found->record.pieces.back().centreMm.x, 110.0) << "the cecum lies on the right";
+    EXPECT_LT(found->record.pieces.back().centerMm.x, 110.0) << "the cecum lies on the right";
 }
 
 TEST(FindColonInMask, RefusesWhatIsNoColonAndWhatIsElsewhere) {
@@ -600,7 +600,7 @@ TEST(FindColon, ASectionFullOfFluidToItsRoofBelongsToThePool) {
     EXPECT_NEAR(untaggedMl(*found), drawnMl, 0.3 * drawnMl);  // a millimetre is the wall's
     EXPECT_GT(diceWithDrawing(*found), 0.96);
     EXPECT_TRUE(isOnePiece(*found));
-    EXPECT_NEAR(found->record.pieces.back().centreMm.z, 120.0, 40.0)
+    EXPECT_NEAR(found->record.pieces.back().centerMm.z, 120.0, 40.0)
         << "the course ends at the cecum";
 }
 
@@ -670,7 +670,7 @@ TEST(FindColon, ABalloonInTheRectumIsLumen) {
     EXPECT_TRUE(isOnePiece(*found));
     EXPECT_TRUE(tells(*found, "a catheter's balloon"));
     for (const auto& body : found->record.leftOut)
-        EXPECT_GT(glm::distance(body.centreMm, balloon.a), 20.0);
+        EXPECT_GT(glm::distance(body.centerMm, balloon.a), 20.0);
 }
 
 // Lying on the left side, down is towards the patient's left.
@@ -737,7 +737,7 @@ TEST(FindColon, ColonThatTheCourseDoesNotReachIsTold) {
     EXPECT_TRUE(tells(*found, "were taken for other than colon"));
     double toldMl = 0.0;
     for (const auto& body : found->record.leftOut)
-        toldMl += body.centreMm.x < 90 && body.centreMm.z < 195 ? body.volumeMl : 0.0;
+        toldMl += body.centerMm.x < 90 && body.centerMm.z < 195 ? body.volumeMl : 0.0;
     EXPECT_GT(toldMl, 50.0);
     EXPECT_LT(found->record.confidence, 0.7);
 }
@@ -982,7 +982,7 @@ TEST(FindColon, APartThatIsTaggedMoreIsStillColon) {
     const auto found = find(tagsTheRightMore(1.75).scan());
     ASSERT_TRUE(found) << describe(found.error());
     EXPECT_GT(diceWithDrawing(*found), 0.985);
-    EXPECT_LT(found->record.pieces.back().centreMm.z, 150.0) << "the course ends at the cecum";
+    EXPECT_LT(found->record.pieces.back().centerMm.z, 150.0) << "the course ends at the cecum";
 }
 
 TEST(FindColon, APartThatIsTooBrightForFluidIsTold) {
@@ -992,7 +992,7 @@ TEST(FindColon, APartThatIsTooBrightForFluidIsTold) {
     EXPECT_LT(labelledMl(*found, [&](glm::dvec3 p) { return onTheRight(p) && p.z < 250.0; }), 1.0);
     double toldMl = 0.0;
     for (const auto& body : found->record.leftOut)
-        toldMl += onTheRight(body.centreMm) ? body.volumeMl : 0.0;
+        toldMl += onTheRight(body.centerMm) ? body.volumeMl : 0.0;
     EXPECT_GT(toldMl, 100.0);
     EXPECT_TRUE(std::ranges::any_of(found->record.warnings, [](const std::string& warning) {
         return warning.find("tagged material") != std::string::npos;
@@ -1019,7 +1019,7 @@ TEST(FindColon, ALargeBallOfTaggedStoolIsOfTheLumen) {
     EXPECT_GT(ballMl, 2.0);
     EXPECT_GT(taggedMl, 0.98 * ballMl);
     for (const auto& body : found->record.leftOut)
-        EXPECT_GT(fromMiddle(body.centreMm), 9.0) << "what is lumen was not left out";
+        EXPECT_GT(fromMiddle(body.centerMm), 9.0) << "what is lumen was not left out";
 }
 
 // A flat loop of opacified bowel is pressed against the colon, one voxel of wall between: it shows
@@ -1038,7 +1038,7 @@ TEST(FindColon, ATaggedLoopThatLiesAgainstTheColonIsNotStool) {
     EXPECT_GT(diceWithDrawing(*found), 0.985);
     const auto& leftOut = found->record.leftOut;
     EXPECT_TRUE(std::any_of(leftOut.begin(), leftOut.end(), [&](const auto& body) {
-        return inLoop(body.centreMm);
+        return inLoop(body.centerMm);
     })) << "it was searched as bowel";
 }
 
@@ -1075,12 +1075,12 @@ TEST(FindColon, ACutPartsAnOpenStomaFromTheRoom) {
     ASSERT_TRUE(cut) << describe(cut.error());
     const CutBall& ball = options.edits.cuts[0];
     const auto inside = [&](glm::dvec3 p) {
-        return inColon(p) || (outsideMm(stoma, p) < 0.0 && p.x < ball.centreMm.x &&
-                              glm::distance(p, ball.centreMm) > ball.radiusMm);
+        return inColon(p) || (outsideMm(stoma, p) < 0.0 && p.x < ball.centerMm.x &&
+                              glm::distance(p, ball.centerMm) > ball.radiusMm);
     };
     EXPECT_GT(diceWithDrawing(*cut, inside), 0.98);
     EXPECT_FALSE(tells(*cut, "as through a stoma"));
-    EXPECT_EQ(labelledMl(*cut, [&](glm::dvec3 p) { return p.x > ball.centreMm.x; }), 0.0);
+    EXPECT_EQ(labelledMl(*cut, [&](glm::dvec3 p) { return p.x > ball.centerMm.x; }), 0.0);
 }
 
 // Bowel that two stomas open is told by the place of each, not by what lies midway.

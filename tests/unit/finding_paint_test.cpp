@@ -227,9 +227,9 @@ TEST(FindingPaint, WhatIsSmallerThanAPixelHasThoseAroundIt) {
         const glm::dvec2 size(painter()->size());
         for (const FindingPixel& pixel : pixels) {
             EXPECT_EQ(pixel.finding, 0);
-            const glm::dvec2 centre(pixel.pixel % int(size.x) + 0.5,
+            const glm::dvec2 center(pixel.pixel % int(size.x) + 0.5,
                                     pixel.pixel / int(size.x) + 0.5);
-            glm::dvec2 off = centre - (size - glm::dvec2(facets[t].flat) * size.x);
+            glm::dvec2 off = center - (size - glm::dvec2(facets[t].flat) * size.x);
             off.x -= size.x * std::round(off.x / size.x);
             EXPECT_LE(std::max(std::abs(off.x), std::abs(off.y)), 1.001);
         }

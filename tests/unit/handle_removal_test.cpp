@@ -120,26 +120,26 @@ TEST(HandleRemoval, PassesOverATunnelThatSomethingGoesThrough) {
     }
     std::erase_if(mesh.triangles,
                   [&](const glm::ivec3& t) { return t.x == from || t.y == from || t.z == from; });
-    glm::dvec3 centre(0.0);
+    glm::dvec3 center(0.0);
     for (const int v : rim)
-        centre += mesh.vertices[v] / double(rim.size());
+        center += mesh.vertices[v] / double(rim.size());
     const glm::dvec3 over(0.0, 0.0, 22.0), down(0.0, 0.0, -22.0);
     const auto ringAt = [&](const glm::dvec3& at) {
         std::vector<int> ring;
         for (const int v : std::vector(rim)) {
             ring.push_back(int(mesh.vertices.size()));
-            mesh.vertices.push_back(at + mesh.vertices[v] - centre);
+            mesh.vertices.push_back(at + mesh.vertices[v] - center);
         }
         return ring;
     };
     std::vector<std::vector<int>> rings{rim};
     for (int s = 1; s <= 12; ++s)
-        rings.push_back(ringAt(glm::mix(centre, over, s / 12.0)));
+        rings.push_back(ringAt(glm::mix(center, over, s / 12.0)));
     // Down the axis the ring lies across it, turned half over so that it keeps its sense.
     for (int s = 0; s <= 40; ++s) {
         std::vector<int> ring;
         for (std::size_t i = 0; i < rim.size(); ++i) {
-            const glm::dvec3 arm = mesh.vertices[rim[i]] - centre;
+            const glm::dvec3 arm = mesh.vertices[rim[i]] - center;
             ring.push_back(int(mesh.vertices.size()));
             mesh.vertices.push_back(glm::mix(over, down, s / 40.0) +
                                     glm::dvec3(-arm.x, arm.y, 0.0) - glm::dvec3(3.0, 0.0, 1.5));

@@ -22,15 +22,15 @@ Volume<std::int16_t> scanOf(const std::function<bool(glm::dvec3)>& content) {
     return hu;
 }
 
-bool inBall(glm::dvec3 p, glm::dvec3 centre, double radius) {
-    return glm::distance(p, centre) <= radius;
+bool inBall(glm::dvec3 p, glm::dvec3 center, double radius) {
+    return glm::distance(p, center) <= radius;
 }
-const glm::dvec3 largeCentre(15.0, 25.0, 30.0), smallCentre(45.0, 25.0, 30.0);
+const glm::dvec3 largeCenter(15.0, 25.0, 30.0), smallCenter(45.0, 25.0, 30.0);
 bool inLarge(glm::dvec3 p) {
-    return inBall(p, largeCentre, 11.0);
+    return inBall(p, largeCenter, 11.0);
 }
 bool inSmall(glm::dvec3 p) {
-    return inBall(p, smallCentre, 7.0);
+    return inBall(p, smallCenter, 7.0);
 }
 bool inBridge(glm::dvec3 p) {
     return std::hypot(p.y - 25.0, p.z - 30.0) <= 1.6 && p.x > 15.0 && p.x < 45.0;
@@ -57,15 +57,15 @@ TEST(HuRangeLumen, TheLargestBodyUnlessSeedsSayOtherwise) {
     const auto both = scanOf([](glm::dvec3 p) { return inLarge(p) || inSmall(p); });
     expectSet(findHuRangeLumen(both, options()), scanOf(inLarge));
     HuRangeOptions seeded = options();
-    seeded.seedsMm = {patientMm(smallCentre)};
+    seeded.seedsMm = {patientMm(smallCenter)};
     expectSet(findHuRangeLumen(both, seeded), scanOf(inSmall));
-    seeded.seedsMm.push_back(patientMm(largeCentre + glm::dvec3(0, 14.0, 0)));  // 3 mm outside
+    seeded.seedsMm.push_back(patientMm(largeCenter + glm::dvec3(0, 14.0, 0)));  // 3 mm outside
     expectSet(findHuRangeLumen(both, seeded), both);
     EXPECT_EQ(findHuRangeLumen(both, seeded)->bodies, 2);
     HuRangeOptions excluding = options();
-    excluding.excludesMm = {patientMm(largeCentre)};
+    excluding.excludesMm = {patientMm(largeCenter)};
     expectSet(findHuRangeLumen(both, excluding), scanOf(inSmall));
-    excluding.excludesMm.push_back(patientMm(smallCentre));
+    excluding.excludesMm.push_back(patientMm(smallCenter));
     EXPECT_EQ(findHuRangeLumen(both, excluding).error().kind, ErrorKind::noResult);
 }
 
@@ -82,13 +82,13 @@ TEST(HuRangeLumen, BothEndsOfTheRangeAreContent) {
 
 TEST(HuRangeLumen, WhatTheContentEnclosesBelongsToIt) {
     const auto hollow =
-        scanOf([](glm::dvec3 p) { return inLarge(p) && !inBall(p, largeCentre, 4); });
+        scanOf([](glm::dvec3 p) { return inLarge(p) && !inBall(p, largeCenter, 4); });
     const auto found = findHuRangeLumen(hollow, options());
     expectSet(found, scanOf(inLarge));
     EXPECT_EQ(found->notes.size(), 1u);
     // A hole that reaches the outside is none of it.
     const auto bored = scanOf([](glm::dvec3 p) {
-        return inLarge(p) && std::hypot(p.x - largeCentre.x, p.y - largeCentre.y) > 3.0;
+        return inLarge(p) && std::hypot(p.x - largeCenter.x, p.y - largeCenter.y) > 3.0;
     });
     expectSet(findHuRangeLumen(bored, options()), bored);
 }
@@ -183,7 +183,7 @@ TEST(HuRangeLumen, GrowthGoesThreeVoxelsAndNoFarther) {
 TEST(HuRangeLumen, APointAwayFromAllContentIsRefused) {
     const auto hu = scanOf(inLarge);
     for (const glm::dvec3 away :
-         {patientMm(smallCentre), glm::dvec3(1e5), glm::dvec3(1e300), glm::dvec3(std::nan(""))}) {
+         {patientMm(smallCenter), glm::dvec3(1e5), glm::dvec3(1e300), glm::dvec3(std::nan(""))}) {
         HuRangeOptions seeded = options();
         seeded.seedsMm = {away};
         EXPECT_EQ(findHuRangeLumen(hu, seeded).error().kind, ErrorKind::badInput);

@@ -95,10 +95,10 @@ TEST(PhantomGrowths, TheTruthTellsWhatFluidWithoutTaggingHides) {
         if (!growth.neoplastic) continue;
         // By what the voxels of the lumen around it hold, the truth of both scans.
         const double reachMm = 0.5 * growth.diameterMm + 2.0;
-        const glm::ivec3 centre(glm::round(grid.voxelFromPatientPoint(growth.positionMm))),
+        const glm::ivec3 center(glm::round(grid.voxelFromPatientPoint(growth.positionMm))),
             reach(glm::ceil(reachMm / grid.spacingMm()));
         int untagged = 0, other = 0;
-        visitBox(glm::max(centre - reach, glm::ivec3(0)), glm::min(centre + reach, grid.size - 1),
+        visitBox(glm::max(center - reach, glm::ivec3(0)), glm::min(center + reach, grid.size - 1),
                  [&](glm::ivec3 v) {
                      const glm::dvec3 at = grid.patientFromVoxelPoint(glm::dvec3(v));
                      if (!made.lumen.at(v) || glm::distance(at, growth.positionMm) > reachMm)

@@ -64,7 +64,7 @@ TEST(Growth, AGentlerFootOnlyAddsTissueAroundIt) {
     Growth growth;
     growth.kind = Growth::Kind::flat;
     growth.inward = place->inward, growth.tangent = place->tangent;
-    growth.centre = growth.root = place->at;
+    growth.center = growth.root = place->at;
     growth.semiAxes = {6.0, 5.0, 2.0};
     ColonShape sharp = bare, gentle = bare;
     sharp.add(growth);
@@ -77,7 +77,7 @@ TEST(Growth, AGentlerFootOnlyAddsTissueAroundIt) {
             const double more = gentle.evaluate(p).lumenMm - sharp.evaluate(p).lumenMm;
             EXPECT_GE(more, -1e-9);
             most = std::max(most, more);
-            if (glm::distance(p, growth.centre) > growth.reachMm()) {
+            if (glm::distance(p, growth.center) > growth.reachMm()) {
                 EXPECT_EQ(gentle.evaluate(p).lumenMm, bare.evaluate(p).lumenMm);
             }
         }

@@ -141,11 +141,11 @@ TEST(TrueSurface, AgreesWithBruteForceOnAColon) {
     double sum = 0.0, largest = 0.0;
     int compared = 0;
     // A cut-out of full resolution about a polyp, and some about folds.
-    for (const glm::dvec3 centre :
-         {colon.shape.growths()[7].centre, colon.shape.path().at(500.0).position,
+    for (const glm::dvec3 center :
+         {colon.shape.growths()[7].center, colon.shape.path().at(500.0).position,
           colon.shape.path().at(1200.0).position}) {
         const Grid grid =
-            axisAlignedGrid({64, 64, 46}, {0.75, 0.75, 1.05}, centre - glm::dvec3(24.0));
+            axisAlignedGrid({64, 64, 46}, {0.75, 0.75, 1.05}, center - glm::dvec3(24.0));
         const auto field = [&](glm::dvec3 p) { return colon.shape.evaluate(p).lumenMm; };
         const TrueSurface surface({field, nullptr}, insideOf(grid, field), 2);
         Random random(3, 3);
@@ -153,7 +153,7 @@ TEST(TrueSurface, AgreesWithBruteForceOnAColon) {
             const auto& sample =
                 surface.samples()[std::size_t(random.index(int(surface.samples().size())))];
             const glm::dvec3 p = sample.positionMm + 0.35 * random.normal3();
-            if (glm::any(glm::greaterThan(glm::abs(p - centre), glm::dvec3(22.0)))) continue;
+            if (glm::any(glm::greaterThan(glm::abs(p - center), glm::dvec3(22.0)))) continue;
             const double exact = bruteForceMm(colon.shape, p, 1.2);
             if (exact > 1.1) continue;
             const double error = surface.distanceMm(p) - exact;

@@ -36,9 +36,9 @@ double vessel(glm::dvec3 p) {
 double loopedVessel(glm::dvec3 p) {
     return std::min(vessel(p), capsule(p, tip, high - glm::dvec3(0, 0, 6), 3.0));
 }
-const glm::dvec3 bladderCentre = origin + glm::dvec3(30, 25, 45);
+const glm::dvec3 bladderCenter = origin + glm::dvec3(30, 25, 45);
 double bladder(glm::dvec3 p) {
-    const glm::dvec3 q = (p - bladderCentre) / glm::dvec3(22, 18, 26);
+    const glm::dvec3 q = (p - bladderCenter) / glm::dvec3(22, 18, 26);
     return (glm::length(q) - 1.0) * 18.0;
 }
 
@@ -179,7 +179,7 @@ TEST_F(PrepareOrgans, ABladderWhateverSurroundsIt) {
                 "end-points": "farthest", "branches": false, "lumen": {"finder": "hu-range",
                 "opening-mm": 4, "hu": )") +
                          hu + "}}");
-        const auto report = prepareAs(profile, {bladderCentre});
+        const auto report = prepareAs(profile, {bladderCenter});
         ASSERT_TRUE(report) << contentHu << ": " << describe(report.error());
         const TriMesh surface = opened().readMesh().value();
         EXPECT_EQ(meshTopology(surface).eulerCharacteristic, 2);

@@ -14,14 +14,14 @@ namespace haustra::contouring {
 namespace {
 
 const Grid grid = axisAlignedGrid({50, 48, 40}, {0.8, 0.8, 1.1}, {-20.0, -15.0, 7.0});
-const glm::dvec3 centreMm = grid.patientFromVoxelPoint({25.2, 23.7, 19.6});
+const glm::dvec3 centerMm = grid.patientFromVoxelPoint({25.2, 23.7, 19.6});
 constexpr double radiusMm = 12.3;
 
 Volume<std::uint8_t> ball(double radius = radiusMm) {
     Volume<std::uint8_t> labels(grid);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
-        labels.writable()[n] = glm::distance(p, centreMm) < radius;
+        labels.writable()[n] = glm::distance(p, centerMm) < radius;
     }
     return labels;
 }
@@ -30,7 +30,7 @@ Volume<std::int16_t> scan(double contentHu, double aroundHu) {
     Volume<std::int16_t> hu(grid);
     for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
         const double mm =
-            glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(n)), centreMm) - radiusMm;
+            glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(n)), centerMm) - radiusMm;
         const double share = 0.5 * std::erfc(mm / 0.8);
         hu.writable()[n] = std::int16_t(std::lround(share * contentHu + (1 - share) * aroundHu));
     }
@@ -71,7 +71,7 @@ TEST(WallField, AMasksSurfaceIsNoStaircase) {
         EXPECT_EQ(meshTopology(mesh).eulerCharacteristic, 2);
         double mean = 0.0, square = 0.0;
         for (const glm::dvec3& v : mesh.vertices) {
-            const double mm = glm::distance(v, centreMm) - radiusMm;
+            const double mm = glm::distance(v, centerMm) - radiusMm;
             mean += mm, square += mm * mm;
         }
         const double count = double(mesh.vertices.size());
@@ -108,7 +108,7 @@ TEST(WallField, ContentsWallIsMidwayAndRisesOutwards) {
         const TriMesh mesh = contourLumen(field->hu, ball(), field->isoHu).value();
         double sum = 0.0;
         for (const glm::dvec3& v : mesh.vertices)
-            sum += std::abs(glm::distance(v, centreMm) - radiusMm);
+            sum += std::abs(glm::distance(v, centerMm) - radiusMm);
         EXPECT_LT(sum / double(mesh.vertices.size()), 0.06) << hu.x;
     }
 }

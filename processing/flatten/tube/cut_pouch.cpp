@@ -53,7 +53,7 @@ double clearance(const std::vector<glm::dvec2>& polygon, glm::dvec2 at) {
 }
 
 /// A place from which all of the polygon is seen, as far from its sides as descent finds.
-std::optional<glm::dvec2> centreOf(const std::vector<glm::dvec2>& polygon, glm::dvec2 middle,
+std::optional<glm::dvec2> centerOf(const std::vector<glm::dvec2>& polygon, glm::dvec2 middle,
                                    double radius) {
     glm::dvec2 mean(0.0);
     for (const glm::dvec2& p : polygon)
@@ -97,8 +97,8 @@ public:
         if (!findBorder()) return 0.0;
         for (const int v : border_)
             borderFlat_.push_back(placeNear(map, v, pouch_.middle));
-        centre_ = centreOf(borderFlat_, pouch_.middle, pouch_.radius);
-        return centre_ ? clearance(borderFlat_, *centre_) / pouch_.radius : 0.0;
+        center_ = centerOf(borderFlat_, pouch_.middle, pouch_.radius);
+        return center_ ? clearance(borderFlat_, *center_) / pouch_.radius : 0.0;
     }
 
     /// Embeds what is within the ring as its own conformal map would have it. False where that
@@ -135,7 +135,7 @@ public:
     bool placeOnGrid(double units) {
         if (!work_->take(pouch_.triangles.size()) || !cutAlong(2)) return false;
         if (ringsMeet()) return false;
-        const std::vector<double> angles = ringAngles(*centre_);
+        const std::vector<double> angles = ringAngles(*center_);
         const auto corners = cornersFor(angles);
         if (!corners) return false;
         std::vector<int> number(placesMm_.size());
@@ -163,14 +163,14 @@ public:
                 std::atan2(glm::dot(corners->at[c] - corners->at[(c + 2) % 3], outward),
                            glm::dot(corners->at[c] - corners->at[(c + 1) % 3], outward)));
         }
-        const double clear = clearance(borderFlat_, *centre_);
+        const double clear = clearance(borderFlat_, *center_);
         for (const double share : {0.9, 0.75, 0.5, 0.25}) {
             for (const double round : {0.125, 0.03125, 0.0078125}) {
                 const auto inWeights = [&](const glm::dvec3& w) {
                     return share * clear * (1.0 - round) *
                            (w.x * corners->at[0] + w.y * corners->at[1] + w.z * corners->at[2]);
                 };
-                const Grid grid = gridFor(*centre_ + inWeights(glm::dvec3(1.0 / 3.0)),
+                const Grid grid = gridFor(*center_ + inWeights(glm::dvec3(1.0 / 3.0)),
                                           inWeights(weights * glm::dvec3(-1.0, 1.0, 0.0)),
                                           inWeights(weights * glm::dvec3(-1.0, 0.0, 1.0)),
                                           double(count - 1), units);
@@ -290,7 +290,7 @@ private:
     /// Numbers and cuts what is within the border, along one ring or two; false where that is
     /// none.
     bool cutAlong(int rings) {
-        if (!centre_) return false;
+        if (!center_) return false;
         rings_ = rings;
         splitInwards();
         if (ring_ < 3) return false;
@@ -485,11 +485,11 @@ private:
         }));
     }
 
-    /// The directions from `centre` in which the ring's vertices may lie, in order.
-    std::vector<double> ringAngles(glm::dvec2 centre) const {
+    /// The directions from `center` in which the ring's vertices may lie, in order.
+    std::vector<double> ringAngles(glm::dvec2 center) const {
         std::vector<double> angle;
         for (std::size_t n = 0; n < borderFlat_.size(); ++n) {
-            const glm::dvec2 away = borderFlat_[n] - centre;
+            const glm::dvec2 away = borderFlat_[n] - center;
             double at = std::atan2(away.y, away.x);
             if (n > 0)
                 at += 2.0 * std::numbers::pi *
@@ -608,10 +608,10 @@ private:
     /// collar room; what is within only shrinks with it.
     std::optional<double> collarRadius(const std::vector<glm::dvec2>& ring, double units) {
         for (const double share : {0.9, 0.75, 0.5, 0.25}) {
-            const double radius = share * clearance(borderFlat_, *centre_);
+            const double radius = share * clearance(borderFlat_, *center_);
             places_.clear();
             for (const glm::dvec2& at : ring)
-                places_.push_back(*centre_ + radius * at);
+                places_.push_back(*center_ + radius * at);
             if (fillCollar(units)) return radius;
         }
         return std::nullopt;
@@ -630,7 +630,7 @@ private:
     /// Embeds what is within the ring, which becomes a circle.
     void embed(double units) {
         std::vector<glm::dvec2> ring;
-        for (const double angle : ringAngles(*centre_))
+        for (const double angle : ringAngles(*center_))
             ring.push_back({std::cos(angle), std::sin(angle)});
         if (!collarRadius(ring, units)) return;
         rollUp();
@@ -651,7 +651,7 @@ private:
     void roll(double units) {
         if (!work_->take(inner_.size())) return;
         auto rolled =
-            rollAsPolygon({placesMm_, innerTriangles()}, *strip_, tip_, ringAngles(*centre_));
+            rollAsPolygon({placesMm_, innerTriangles()}, *strip_, tip_, ringAngles(*center_));
         if (!rolled) return;
         const auto before = std::tuple(places_, placesMm_, inner_, collarTriangles_, thin_);
         const std::vector<glm::dvec2> ring(rolled->places.begin(),
@@ -659,7 +659,7 @@ private:
         thin_ = std::numeric_limits<std::size_t>::max();
         if (const auto radius = collarRadius(ring, units)) {
             for (glm::dvec2& at : rolled->places)
-                at = *centre_ + *radius * at;
+                at = *center_ + *radius * at;
             places_ = std::move(rolled->places);
             placesMm_ = std::move(rolled->disc.vertices);
             std::vector<Piece> pieces;
@@ -732,7 +732,7 @@ private:
     std::vector<int> border_, leaving_;  ///< vertices in order, and the half-edges that leave them
     std::unordered_map<int, int> borderIndex_;
     std::vector<glm::dvec2> borderFlat_;
-    std::optional<glm::dvec2> centre_;
+    std::optional<glm::dvec2> center_;
     std::unordered_map<std::uint64_t, int> split_;  ///< the ring's vertices, by the edge's ends
     int rings_ = 1;
     std::size_t ring_ = 0;                      ///< vertices of a ring

@@ -79,7 +79,7 @@ std::optional<glm::dvec2> farthestInside(const std::vector<Line>& lines) {
 
 }  // namespace
 
-bool centreInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v) {
+bool centerInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v) {
     std::vector<Line> sides;
     for (const int corner : stars.of(v)) {
         const auto t = std::size_t(corner / 3);
@@ -154,7 +154,7 @@ private:
 
     /// Moves v to the point within its star that is farthest from the star's sides; false where
     /// there is none from which all of its triangles would be upright.
-    bool centre(int v) { return centreInStar(map_, tube_, stars_, v); }
+    bool center(int v) { return centerInStar(map_, tube_, stars_, v); }
 
     /// The vertices that were moved for triangle t; none where nothing got better.
     std::vector<int> mend(int t) {
@@ -162,7 +162,7 @@ private:
             const int v = tube_.triangles[std::size_t(t)][c];
             if (isOnRim(v)) continue;
             const glm::dvec2 before = map_.flat[std::size_t(v)];
-            if (centre(v) && !isFlipped(map_, tube_, t)) return {v};
+            if (center(v) && !isFlipped(map_, tube_, t)) return {v};
             map_.flat[std::size_t(v)] = before;
         }
         Patch patch;

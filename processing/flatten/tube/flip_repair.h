@@ -10,7 +10,7 @@ namespace haustra::flatten {
 
 /// Moves a vertex to the point from which the nearest of its star's sides is farthest; false where
 /// it has none from which all of its triangles are upright, and then it stays. O(k⁴) for k sides.
-bool centreInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v);
+bool centerInStar(PeriodicMap& map, const TriMesh& tube, const VertexStars& stars, int v);
 
 /// An intrinsic triangulation can leave vertices of the surface's own triangles collinear or turned
 /// over. Where one vertex of a flipped triangle can move to where all its triangles are upright, it

@@ -29,7 +29,7 @@ public:
             if (ring > 0) grow();
             for (int sweep = 0; sweep < sweeps; ++sweep) {
                 for (const int v : vertices_)
-                    centreInStar(map_, tube_, stars_, v);
+                    centerInStar(map_, tube_, stars_, v);
             }
             if (sound(triangles)) return true;
         }
