@@ -4,6 +4,7 @@
 #include "core/srgb.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace haustra::cad {
@@ -46,28 +47,44 @@ BiopsyRay march(const BiopsyScan& scan, const BiopsyTable& table, glm::vec3 star
     FourFloats seen{};  // colour and opacity
     BiopsyRay ray;
     bool inTissue = false, opaque = false;
-    for (int n = 0; n < biopsySteps; ++n, voxel += step) {
-        const float hu = inside ? scan.scan.linearWithin(voxel)
-                                : scan.scan.linear({voxel[0], voxel[1], voxel[2]});
-        const bool empty = hu < airBelow || isLumen(voxel);
-        if ((inTissue || n >= wallSteps) && empty) {
-            ray.reenters = inTissue;
-            break;
+    const auto finish = [&] {
+        ray.color = {seen[0], seen[1], seen[2]};
+        ray.opacity = seen[3];
+        return ray;
+    };
+    // Four steps are looked up at once, also those behind the one where the ray ends.
+    static_assert(biopsySteps % 4 == 0);
+    for (int first = 0; first < biopsySteps; first += 4) {
+        std::array<FourFloats, 4> voxels;
+        for (FourFloats& each : voxels)
+            each = voxel, voxel += step;
+        FourFloats hus;
+        if constexpr (inside) {
+            hus = scan.scan.linearWithin(voxels);
+        } else {
+            for (std::size_t n = 0; n < 4; ++n)
+                hus[n] = scan.scan.linear({voxels[n][0], voxels[n][1], voxels[n][2]});
         }
-        inTissue |= !empty;
-        if (n <= peakSteps) ray.peakHu = std::max(ray.peakHu, hu);
-        ray.tissueMm += float(biopsyStepMm);
-        if (opaque) continue;
-        seen += (1.0f - seen[3]) * table.at(hu);
-        if (seen[3] >= float(terminationOpacity)) {
-            seen /= seen[3];
-            opaque = true;
-            if (end == RayEnd::opaque) break;
+        for (int n = 0; n < 4; ++n) {
+            const float hu = hus[n];
+            const bool empty = hu < airBelow || isLumen(voxels[std::size_t(n)]);
+            if ((inTissue || first + n >= wallSteps) && empty) {
+                ray.reenters = inTissue;
+                return finish();
+            }
+            inTissue |= !empty;
+            if (first + n <= peakSteps) ray.peakHu = std::max(ray.peakHu, hu);
+            ray.tissueMm += float(biopsyStepMm);
+            if (opaque) continue;
+            seen += (1.0f - seen[3]) * table.at(hu);
+            if (seen[3] >= float(terminationOpacity)) {
+                seen /= seen[3];
+                opaque = true;
+                if (end == RayEnd::opaque) return finish();
+            }
         }
     }
-    ray.color = {seen[0], seen[1], seen[2]};
-    ray.opacity = seen[3];
-    return ray;
+    return finish();
 }
 
 }  // namespace

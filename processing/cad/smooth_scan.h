@@ -4,6 +4,7 @@
 #include "cad/fours.h"
 #include "core/volume.h"
 
+#include <array>
 #include <cstring>
 
 #include <glm/glm.hpp>
@@ -47,22 +48,27 @@ public:
         const glm::vec3 inside = glm::clamp(voxel, glm::vec3(0.0f), most - glm::vec3(1e-3f));
         return linearWithin(FourFloats{inside.x, inside.y, inside.z, 0.0f});
     }
-    /// The same of a place that is known to lie within it.
+    /// The same of places that are known to lie within it, each on its own if `voxel` is one, or
+    /// all at once.
     float linearWithin(FourFloats voxel) const {
         const FourInts low = __builtin_convertvector(voxel, FourInts);
         const FourFloats f = voxel - __builtin_convertvector(low, FourFloats);
-        const float* c = smooth_.voxels().data() + std::size_t(low[2]) * slice_ +
-                         std::size_t(low[1]) * row_ + std::size_t(low[0]);
-        // The four pairs along i in two lots, then one after the other axis.
-        const auto pairs = [&](const float* at) {
-            Pair near, far;
-            std::memcpy(&near, at, sizeof near), std::memcpy(&far, at + row_, sizeof far);
-            return __builtin_shufflevector(near, far, 0, 1, 2, 3);
-        };
-        const FourFloats front = pairs(c), plane = front + f[2] * (pairs(c + slice_) - front);
+        const FourFloats plane = planeAt(low, f);
         const FourFloats line =
             plane + f[1] * (__builtin_shufflevector(plane, plane, 2, 3, 2, 3) - plane);
         return line[0] + f[0] * (line[1] - line[0]);
+    }
+    FourFloats linearWithin(const std::array<FourFloats, 4>& voxels) const {
+        std::array<FourFloats, 4> between, planes;
+        for (std::size_t n = 0; n < 4; ++n) {
+            const FourInts low = __builtin_convertvector(voxels[n], FourInts);
+            between[n] = voxels[n] - __builtin_convertvector(low, FourFloats);
+            planes[n] = planeAt(low, between[n]);
+        }
+        const auto [x, y, z, unused] = transposed(between);
+        const auto [p00, p10, p01, p11] = transposed(planes);
+        const FourFloats near = p00 + y * (p01 - p00), far = p10 + y * (p11 - p10);
+        return near + x * (far - near);
     }
     /// Whether linear() clamps nothing there.
     bool within(glm::vec3 voxel) const {
@@ -76,6 +82,20 @@ public:
 
 private:
     using Pair = float __attribute__((vector_size(8)));
+
+    // Between the slices around a place, whose voxel is `low` and which lies `between` voxels: of
+    // its two voxels along i, and of those of the next row.
+    FourFloats planeAt(FourInts low, FourFloats between) const {
+        const float* c = smooth_.voxels().data() + std::size_t(low[2]) * slice_ +
+                         std::size_t(low[1]) * row_ + std::size_t(low[0]);
+        const auto pairs = [&](const float* at) {
+            Pair near, far;
+            std::memcpy(&near, at, sizeof near), std::memcpy(&far, at + row_, sizeof far);
+            return __builtin_shufflevector(near, far, 0, 1, 2, 3);
+        };
+        const FourFloats front = pairs(c);
+        return front + between[2] * (pairs(c + slice_) - front);
+    }
 
     Volume<float> smooth_;
     glm::ivec3 origin_{0};

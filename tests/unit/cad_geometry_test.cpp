@@ -8,6 +8,7 @@
 #include "cad/wall_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -71,6 +72,32 @@ TEST(SmoothScan, KeepsTheDerivativesOfAQuadraticField) {
             for (int c = 0; c < 3; ++c)
                 EXPECT_LT(glm::length(found.hessian[c] - 10.0 * hessian[c]), 1.5);
             EXPECT_LT(glm::length(scan.gradient(center + off) - found.gradient), 25.0);
+        }
+    }
+}
+
+TEST(SmoothScan, FourPlacesAtOnceAreEachAsItIsAlone) {
+    const Grid grid = turnedGrid();
+    std::mt19937 random(3);
+    Volume<std::int16_t> noise(grid);
+    for (std::int16_t& hu : noise.writable())
+        hu = std::int16_t(int(random() % 2000) - 1000);
+    const cad::SmoothScan scan = wholeScan(noise, 1.0);
+    const glm::vec3 most(scan.grid().size - 1);
+    const auto somewhere = [&] {
+        cad::FourFloats voxel{};
+        for (int c = 0; c < 3; ++c)
+            voxel[c] = 0.999f * most[c] * float(random() % 100000) / 1e5f;
+        return voxel;
+    };
+    for (int round = 0; round < 1000; ++round) {
+        const std::array<cad::FourFloats, 4> voxels{somewhere(), somewhere(), somewhere(),
+                                                    somewhere()};
+        const cad::FourFloats all = scan.linearWithin(voxels);
+        for (int n = 0; n < 4; ++n) {
+            const cad::FourFloats& voxel = voxels[std::size_t(n)];
+            ASSERT_EQ(all[n], scan.linearWithin(voxel));
+            ASSERT_EQ(all[n], scan.linear({voxel[0], voxel[1], voxel[2]}));
         }
     }
 }
