@@ -54,7 +54,7 @@ BiopsyRay march(const BiopsyScan& scan, const BiopsyTable& table, glm::vec3 star
     };
     // Four steps are looked up at once, also those behind the one where the ray ends.
     static_assert(biopsySteps % 4 == 0);
-    for (int first = 0; first < biopsySteps; first += 4) {
+    for (int begin = 0; begin < biopsySteps; begin += 4) {
         std::array<FourFloats, 4> voxels;
         for (FourFloats& each : voxels)
             each = voxel, voxel += step;
@@ -68,12 +68,12 @@ BiopsyRay march(const BiopsyScan& scan, const BiopsyTable& table, glm::vec3 star
         for (int n = 0; n < 4; ++n) {
             const float hu = hus[n];
             const bool empty = hu < airBelow || isLumen(voxels[std::size_t(n)]);
-            if ((inTissue || first + n >= wallSteps) && empty) {
+            if ((inTissue || begin + n >= wallSteps) && empty) {
                 ray.reenters = inTissue;
                 return finish();
             }
             inTissue |= !empty;
-            if (first + n <= peakSteps) ray.peakHu = std::max(ray.peakHu, hu);
+            if (begin + n <= peakSteps) ray.peakHu = std::max(ray.peakHu, hu);
             ray.tissueMm += float(biopsyStepMm);
             if (opaque) continue;
             seen += (1.0f - seen[3]) * table.at(hu);

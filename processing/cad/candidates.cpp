@@ -4,6 +4,7 @@
 #include "cad/lesion.h"
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
+#include "core/zeroed_array.h"
 
 #include <algorithm>
 #include <array>

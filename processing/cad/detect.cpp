@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <numeric>
+#include <optional>
 #include <thread>
 
 namespace haustra::cad {
@@ -72,21 +72,21 @@ std::vector<Finding> describe(const PreparedColon& colon, const WallEvidence& ev
     return findings;
 }
 
-// A maximal independent set of the samples, ascending; `nearest`: of each sample itself if it is in
-// the set, else its lowest-numbered neighbour that is.
+// A maximal independent set of the samples, ascending; `memberOf`: of each sample itself if it is
+// in the set, else its lowest-numbered neighbour that is.
 std::vector<std::uint32_t> independentSamples(const WallSamples& wall,
-                                              std::vector<std::uint32_t>& nearest) {
+                                              std::vector<std::uint32_t>& memberOf) {
     std::vector<std::uint32_t> independent;
-    nearest.resize(wall.mesh.vertices.size());
-    for (std::uint32_t v = 0; v < nearest.size(); ++v) {
-        nearest[v] = v;
+    memberOf.resize(wall.mesh.vertices.size());
+    for (std::uint32_t v = 0; v < memberOf.size(); ++v) {
+        memberOf[v] = v;
         for (const std::uint32_t next : wall.around(v)) {
             if (next > v) break;
-            if (nearest[next] != next) continue;
-            nearest[v] = next;
+            if (memberOf[next] != next) continue;
+            memberOf[v] = next;
             break;
         }
-        if (nearest[v] == v) independent.push_back(v);
+        if (memberOf[v] == v) independent.push_back(v);
     }
     return independent;
 }
@@ -107,7 +107,7 @@ std::vector<float> textureDistances(const PreparedColon& colon, const WallEviden
             for (const BiopsyRay& ray : evidence.rays)
                 colors.push_back(ray.color);
         });
-    std::vector<float> distances(colors.size());
+    std::vector<float> distances(measuredAt.size());
     parallelFor(measured.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t m = begin; m < end; ++m) {
             const std::uint32_t v = measured[m];
@@ -115,7 +115,7 @@ std::vector<float> textureDistances(const PreparedColon& colon, const WallEviden
             distances[v] = float(textureDistance(texture, textureVector(v, neighbours, colors)));
         }
     });
-    // Those of the set stay as they are, whichever thread writes them.
+    // Those of the set are only read here.
     parallelFor(distances.size(), 65536, threads, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v)
             if (measuredAt[v] != v) distances[v] = distances[measuredAt[v]];

@@ -221,7 +221,7 @@ std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t
         numbers.add(v);
         distances.push_back(0.0);
     }
-    const glm::dvec3* const places = wall.mesh.vertices.data();
+    const glm::dvec3* const places = wall.mesh.vertices.data();  // looked at too often to check
     // Steps are short beside the width, so a breadth-first order is near enough.
     for (std::uint32_t head = 0; head < numbers.count(); ++head) {
         const std::uint32_t v = numbers.sample(head);

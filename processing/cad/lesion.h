@@ -41,22 +41,24 @@ struct Lesion {
 bool standsOnStalk(const Lesion& lesion);
 
 /// Some samples, numbered from 0 in the order in which they were added. Emptied at no cost, so that
-/// one serves for patch after patch: numbers grow from one to the next. Belongs to one thread.
+/// one serves for patch after patch. Belongs to one thread.
 class SampleNumbers {
 public:
-    explicit SampleNumbers(std::size_t samples) : size_(samples), numberOf_(samples) {}
+    /// Of `samples` < 2³¹; their marks are made anew once so many, at least, have been added.
+    explicit SampleNumbers(std::size_t samples, std::uint32_t mostMarks = 1u << 31)
+        : size_(samples), mostMarks_(mostMarks), numberOf_(samples) {}
     void clear() {
         first_ += count();
         samples_.clear();
-        // So that numbers never run out; all samples at once may be added next.
-        if (first_ < (1u << 31)) return;
+        if (first_ < mostMarks_) return;
         numberOf_ = ZeroedArray<std::uint32_t>(size_);
         first_ = 1;
     }
     void add(std::uint32_t sample) {
         if (has(sample)) return;
-        numberOf_[sample] = first_ + count();
+        const std::uint32_t mark = first_ + count();
         samples_.push_back(sample);
+        numberOf_[sample] = mark;
     }
     bool has(std::uint32_t sample) const { return numberOf_[sample] >= first_; }
     /// Of a sample that has been added.
@@ -66,8 +68,9 @@ public:
 
 private:
     std::size_t size_;
-    std::uint32_t first_ = 1;  // what the first is numbered by now: less is of patches before
-    ZeroedArray<std::uint32_t> numberOf_;
+    std::uint32_t mostMarks_;
+    std::uint32_t first_ = 1;              // the mark of number 0: lower ones are of patches before
+    ZeroedArray<std::uint32_t> numberOf_;  // of each sample, and first_ more
     std::vector<std::uint32_t> samples_;
 };
 

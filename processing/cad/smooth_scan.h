@@ -48,8 +48,7 @@ public:
         const glm::vec3 inside = glm::clamp(voxel, glm::vec3(0.0f), most - glm::vec3(1e-3f));
         return linearWithin(FourFloats{inside.x, inside.y, inside.z, 0.0f});
     }
-    /// The same of places that are known to lie within it, each on its own if `voxel` is one, or
-    /// all at once.
+    /// The same of a place that is known to lie within it.
     float linearWithin(FourFloats voxel) const {
         const FourInts low = __builtin_convertvector(voxel, FourInts);
         const FourFloats f = voxel - __builtin_convertvector(low, FourFloats);
@@ -58,6 +57,7 @@ public:
             plane + f[1] * (__builtin_shufflevector(plane, plane, 2, 3, 2, 3) - plane);
         return line[0] + f[0] * (line[1] - line[0]);
     }
+    /// The same of four such places at once, to the bit.
     FourFloats linearWithin(const std::array<FourFloats, 4>& voxels) const {
         std::array<FourFloats, 4> between, planes;
         for (std::size_t n = 0; n < 4; ++n) {
@@ -67,8 +67,8 @@ public:
         }
         const auto [x, y, z, unused] = transposed(between);
         const auto [p00, p10, p01, p11] = transposed(planes);
-        const FourFloats near = p00 + y * (p01 - p00), far = p10 + y * (p11 - p10);
-        return near + x * (far - near);
+        const FourFloats left = p00 + y * (p01 - p00), right = p10 + y * (p11 - p10);
+        return left + x * (right - left);
     }
     /// Whether linear() clamps nothing there.
     bool within(glm::vec3 voxel) const {
@@ -83,8 +83,8 @@ public:
 private:
     using Pair = float __attribute__((vector_size(8)));
 
-    // Between the slices around a place, whose voxel is `low` and which lies `between` voxels: of
-    // its two voxels along i, and of those of the next row.
+    // Between the two slices around a place, whose lowest voxel is `low` = (i, j, k) and which lies
+    // `between` voxels: at (i, j), (i + 1, j), (i, j + 1) and (i + 1, j + 1).
     FourFloats planeAt(FourInts low, FourFloats between) const {
         const float* c = smooth_.voxels().data() + std::size_t(low[2]) * slice_ +
                          std::size_t(low[1]) * row_ + std::size_t(low[0]);

@@ -61,7 +61,7 @@ TextureStencil::Neighbours TextureStencil::around(std::uint32_t sample, glm::vec
                 // Chosen without a branch: which is the nearest cannot be predicted.
                 const float squared = squaredTo(next);
                 best = squared < least ? next : best;
-                least = std::min(squared, least);
+                least = std::min(least, squared);
             }
         }
         neighbours[s] = best;

@@ -155,7 +155,7 @@ TextureExamples textureExamples(const WallEvidence& evidence, const FlatMap& fla
             }))
             inside.push_back(v);
     }
-    const auto along = stripDirections(evidence.samples, flat, 0);
+    const auto along = stripDirections(evidence.samples, flat, 1);
     const TextureStencil stencil(evidence.samples, along);
     std::vector<glm::vec3> colors;
     for (const BiopsyRay& ray : evidence.rays)

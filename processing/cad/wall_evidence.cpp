@@ -85,7 +85,8 @@ std::vector<LumenLabel> labelsBefore(const PreparedColon& colon, const WallSampl
     return labels;
 }
 
-// From each sample along its shape's normal, by the transfer function that is there.
+// From each sample along its shape's normal: of evidence that has shapes, the smoothed scan, the
+// transfer function, and room for as many rays.
 void castRays(const PreparedColon& colon, int threads, WallEvidence& evidence) {
     const BiopsyTable table(evidence.transferFunction);
     const BiopsyScan scan{*evidence.smooth, colon.lumen, colon.tissue.airBelowHu};
@@ -180,7 +181,7 @@ WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& o
             if (!sampled) joinSamples(evidence.samples);
         },
         [&] {
-            evidence.rays.resize(evidence.samples.mesh.vertices.size());
+            evidence.rays.resize(evidence.samples.mesh.vertices.size());  // by one thread
             evidence.statistics = wallStatistics(colon, *evidence.smooth);
             evidence.transferFunction = options.transferFunction
                                             ? *options.transferFunction

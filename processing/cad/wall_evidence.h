@@ -92,8 +92,8 @@ SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int thread
 /// by second differences along lines into the tissue beneath some 40,000 of the surface's vertices.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
 
-/// `ofSurface`: evidence of the same surface and centerline in another scan. It gives its samples
-/// and its axis, which are the same, and is spent; empty: they are made.
+/// `ofSurface`: evidence of the same surface and centerline in another scan, whole. It gives its
+/// samples and its axis, which are the same, and is spent; empty: they are made.
 WallEvidence gatherEvidence(const PreparedColon& colon, const EvidenceOptions& options,
                             WallEvidence ofSurface = {});
 

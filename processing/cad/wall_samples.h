@@ -40,8 +40,9 @@ struct WallSamples {
 /// the number of samples.
 WallSamples sampleWall(const TriMesh& surface, double mostSpacingMm);
 
-/// The two halves of that, as what is measured at a place needs the first alone: the mesh with the
-/// triangles' sources, and then areas and what is around each sample.
+/// The two halves of that, as what is measured at a place needs `mesh.vertices` alone: first the
+/// mesh and its triangles' sources; then areas and what is around each sample, which before must
+/// not be asked for. Of any mesh whose indices are in range.
 WallSamples dividedWall(const TriMesh& surface, double mostSpacingMm);
 void joinSamples(WallSamples& samples);
 

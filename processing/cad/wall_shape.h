@@ -29,7 +29,7 @@ struct WallShape {
 /// without a gradient is flat.
 WallShape shapeOf(const Derivatives& scan);
 
-/// At each sample. O(samples).
+/// At each sample; of these it needs `mesh.vertices` alone. O(samples).
 std::vector<WallShape> shapesOf(const WallSamples& samples, const SmoothScan& scan, int threads);
 
 }  // namespace haustra::cad

@@ -34,7 +34,9 @@ void parallelForEach(std::size_t count, int threads, const MakeScratch& makeScra
 }
 
 /// Runs different pieces of work side by side, each on one of `threads` threads (≤ 0: all cores),
-/// begun in their order. Returns when all are done. Else as parallelFor.
+/// begun in their order. A piece may use parallelFor with as many threads itself, so that cores are
+/// not idle where others have ended; for that while there are more threads than `threads`. Returns
+/// when all are done. Else as parallelFor.
 template <class... Parts>
 void parallelInvoke(int threads, const Parts&... parts) {
     const std::array<std::function<void()>, sizeof...(parts)> all{std::cref(parts)...};

@@ -9,8 +9,9 @@
 
 namespace haustra {
 
-/// `size` numbers, all 0. Of a large array only the pages that are touched are ever held, so that
-/// one of which little is used costs little: a vector of zeros writes all of them.
+/// `size` numbers, all 0. Of one that is made of fresh memory only the pages that are touched are
+/// ever held, so that where little of it is used it costs little: a vector of zeros writes all.
+/// Indices are not checked: it is for what is asked in innermost loops.
 template <class T>
 class ZeroedArray {
     static_assert(std::is_arithmetic_v<T>);

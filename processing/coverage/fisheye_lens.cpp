@@ -134,7 +134,7 @@ std::optional<double> raisedOfRadius(const FisheyeLens& lens, double radius) {
 }
 
 /// What decentring adds to a point of (a, b), over k₁.
-glm::dvec2 decentered(const FisheyeLens& lens, glm::dvec2 at) {
+glm::dvec2 decentred(const FisheyeLens& lens, glm::dvec2 at) {
     const auto [p, q] = lens.decentring;
     const double t = glm::dot(at, at), ab = 2.0 * at.x * at.y;
     return {p * ab + q * (t + 2.0 * at.x * at.x), p * (t + 2.0 * at.y * at.y) + q * ab};
@@ -174,7 +174,7 @@ std::optional<glm::dvec3> directionOf(const FisheyeLens& lens, glm::dvec2 pixel)
     const glm::dvec2 shown((pixel.x - lens.u0) / lens.mu, (pixel.y - lens.v0) / lens.mv);
     glm::dvec2 at(0.0);  // s·(cos φ, sin φ)
     for (int step = 0; step < 100; ++step) {
-        const glm::dvec2 radial = shown - lens.k[0] * decentered(lens, at);
+        const glm::dvec2 radial = shown - lens.k[0] * decentred(lens, at);
         const double radius = std::hypot(radial.x, radial.y);
         const auto s = raisedOfRadius(lens, radius);
         if (!s) return std::nullopt;

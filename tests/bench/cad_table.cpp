@@ -57,12 +57,26 @@ void timeWholeMucosa(const cad::WallEvidence& evidence) {
                 (milliseconds() - start) / 1e3);
 }
 
-/// Of two programs that measure the same it is the same (FNV-1a over the features' bits).
-std::uint32_t fingerprintOf(const std::vector<cad::Candidate>& candidates) {
-    std::uint32_t hash = 2166136261u;
-    for (const cad::Candidate& candidate : candidates)
+/// Of two programs that find and measure the same it is the same (FNV-1a over the bytes of patches,
+/// voxels and features).
+std::uint64_t fingerprintOf(const std::vector<cad::Candidate>& candidates) {
+    std::uint64_t hash = 14695981039346656037u;
+    const auto add = [&](std::uint32_t bits) {
+        for (int byte = 0; byte < 4; ++byte)
+            hash = (hash ^ (bits >> (8 * byte) & 0xffu)) * 1099511628211u;
+    };
+    for (const cad::Candidate& candidate : candidates) {
+        add(std::uint32_t(candidate.levelOf));
+        for (const std::uint32_t sample : candidate.lesion.patch.samples)
+            add(sample);
+        for (const VoxelRun& run : candidate.lesion.voxels) {
+            for (int axis = 0; axis < 3; ++axis)
+                add(std::uint32_t(run.first[axis]));
+            add(std::uint32_t(run.count));
+        }
         for (const float feature : candidate.features)
-            hash = (hash ^ std::bit_cast<std::uint32_t>(feature)) * 16777619u;
+            add(std::bit_cast<std::uint32_t>(feature));
+    }
     return hash;
 }
 
@@ -165,7 +179,8 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
     auto candidates = timed("candidates and their features", [&] {
         return cad::findCandidates(colon, evidence, &model.texture, {}, &model, &residue);
     });
-    std::printf("fingerprint of all their features: %08x\n", fingerprintOf(candidates));
+    std::printf("fingerprint of them: %016llx\n",
+                static_cast<unsigned long long>(fingerprintOf(candidates)));
     const auto before =
         std::ranges::count_if(candidates, [](const auto& c) { return c.levelOf < 0; });
     const auto levels = std::ptrdiff_t(candidates.size()) - before;

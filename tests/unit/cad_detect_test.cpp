@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -439,6 +441,84 @@ TEST(Biopsy, ARayEndsWhereTheLumenBeginsAgain) {
     EXPECT_NEAR(along.tissueMm, cad::biopsySteps * cad::biopsyStepMm, 1e-3);
     EXPECT_GT(along.opacity, through.opacity);
     EXPECT_GT(along.color.g, along.color.r) << "tissue of middle density is green";
+}
+
+// A biopsy ray step by step, by what its docstring says.
+cad::BiopsyRay steppedRay(const cad::BiopsyScan& biopsy, const cad::BiopsyTable& table,
+                          glm::dvec3 startMm, glm::dvec3 intoWall, cad::RayEnd end) {
+    const glm::dmat4& voxelFromPatient = biopsy.scan.voxelFromPatient();
+    glm::vec3 voxel(voxelFromPatient * glm::dvec4(startMm, 1.0));
+    const glm::vec3 step(cad::biopsyStepMm * (glm::dmat3(voxelFromPatient) * intoWall));
+    const glm::ivec3 last = biopsy.lumen.grid().size - 1;
+    cad::BiopsyRay ray;
+    bool inTissue = false, opaque = false;
+    for (int n = 0; n < cad::biopsySteps; ++n, voxel += step) {
+        const float hu = biopsy.scan.linear(voxel);
+        const glm::ivec3 at(voxel + (glm::vec3(biopsy.scan.origin()) + 0.5f));
+        const bool empty = hu < float(biopsy.airBelowHu) ||
+                           biopsy.lumen.at(glm::clamp(at, glm::ivec3(0), last)) != 0;
+        if (empty && (inTissue || n >= 3)) {
+            ray.reenters = inTissue;
+            return ray;
+        }
+        inTissue |= !empty;
+        if (n * cad::biopsyStepMm <= cad::peakMm) ray.peakHu = std::max(ray.peakHu, hu);
+        ray.tissueMm += float(cad::biopsyStepMm);
+        if (opaque) continue;
+        const float left = 1.0f - ray.opacity;
+        for (int c = 0; c < 3; ++c)
+            ray.color[c] += left * table.at(hu)[c];
+        ray.opacity += left * table.at(hu)[3];
+        if (ray.opacity < float(terminationOpacity)) continue;
+        ray.color /= ray.opacity;
+        ray.opacity = 1.0f;
+        opaque = true;
+        if (end == cad::RayEnd::opaque) return ray;
+    }
+    return ray;
+}
+
+TEST(Biopsy, ARayIsWhatItIsStepByStepWhereverItEnds) {
+    // Lumps of gas, tissue and something dense, and a lumen that has little to do with them.
+    const Grid grid = axisAlignedGrid({40, 40, 40}, {0.8, 0.7, 1.0}, {0, 0, 0});
+    std::mt19937 random(7);
+    Volume<std::int16_t> hu(grid);
+    Volume<std::uint8_t> lumen(grid);
+    const glm::dvec3 wave(random() % 7 + 3.0, random() % 7 + 3.0, random() % 7 + 3.0);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::dvec3 p = grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n)));
+        const double v = std::sin(p.x / wave.x) + std::sin(p.y / wave.y) + std::sin(p.z / wave.z);
+        hu.writable()[n] = std::int16_t(v < -1.6 ? -1000 : 150.0 * v);
+        lumen.writable()[n] = v < -1.8 && random() % 4 == 0;
+    }
+    const cad::SmoothScan scan(hu, {4, 4, 4}, {26, 22, 34}, 0.6, 1);
+    const cad::BiopsyScan biopsy{scan, lumen, -470.0};
+    TransferFunction dense = cad::fixedBiopsyTransfer();
+    for (TransferFunctionPoint& point : dense.points)
+        point.opacity = std::min(0.9, 3.0 * point.opacity);
+    std::set<int> ends;
+    int opaque = 0;
+    for (const TransferFunction& transfer : {cad::fixedBiopsyTransfer(), dense}) {
+        const cad::BiopsyTable table(transfer);
+        for (int n = 0; n < 4000; ++n) {
+            const auto within = [&](double most) { return most * double(random() % 10000) / 1e4; };
+            const glm::dvec3 start(within(31), within(27), within(39)),
+                way = glm::normalize(glm::dvec3(within(2), within(2), within(2)) - 0.97);
+            for (const cad::RayEnd end : {cad::RayEnd::lumen, cad::RayEnd::opaque}) {
+                const cad::BiopsyRay ray = cad::castBiopsyRay(biopsy, table, start, way, end),
+                                     stepped = steppedRay(biopsy, table, start, way, end);
+                ASSERT_EQ(ray.color, stepped.color);
+                ASSERT_EQ(ray.opacity, stepped.opacity);
+                ASSERT_EQ(ray.tissueMm, stepped.tissueMm);
+                ASSERT_EQ(ray.reenters, stepped.reenters);
+                ASSERT_EQ(ray.peakHu, stepped.peakHu);
+                ends.insert(int(ray.tissueMm / cad::biopsyStepMm));
+                opaque += ray.opacity == 1.0f;
+            }
+        }
+    }
+    EXPECT_GT(ends.size(), 30u) << "rays that end at any of four steps";
+    EXPECT_GT(opaque, 100);
 }
 
 TEST(Detect, APlaceAlongTheColonIsWhereItsWallBelongsThoughAnotherLoopIsNearer) {

@@ -240,8 +240,29 @@ TEST(WallSamples, LieCloseOnTheSurfaceItself) {
     }
 }
 
+TEST(WallSamples, AreJoinedOnceToEachNeighbourWhateverTheMesh) {
+    // An edge of three triangles, two fans at one vertex, a corner that a triangle has twice, and
+    // one that no triangle has; and nothing.
+    cad::WallSamples samples;
+    samples.mesh.vertices.resize(10, glm::dvec3(0.0));
+    samples.mesh.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {4, 5, 6}, {7, 8, 8}};
+    cad::joinSamples(samples);
+    for (std::uint32_t v = 0; v < samples.mesh.vertices.size(); ++v) {
+        std::set<std::uint32_t> others;
+        for (const glm::ivec3& t : samples.mesh.triangles)
+            if (glm::any(glm::equal(t, glm::ivec3(int(v)))))
+                for (int n = 0; n < 3; ++n)
+                    others.insert(std::uint32_t(t[n]));
+        others.erase(v);
+        EXPECT_TRUE(std::ranges::equal(samples.around(v), others)) << v;
+    }
+    cad::WallSamples none;
+    cad::joinSamples(none);
+    EXPECT_TRUE(none.neighbours.empty());
+}
+
 TEST(SampleNumbers, HoldWhatWasAddedSinceTheyWereEmptied) {
-    cad::SampleNumbers numbers(10);
+    cad::SampleNumbers numbers(10, 40);  // marks are made anew every few rounds
     std::mt19937 random(5);
     for (int round = 0; round < 50; ++round) {
         numbers.clear();

@@ -8,6 +8,7 @@
 #include "core/text_file.h"
 #include "core/tri_mesh.h"
 #include "core/volume.h"
+#include "core/zeroed_array.h"
 #include "temporary_folder.h"
 
 #include <algorithm>
@@ -353,6 +354,17 @@ TEST(Parallel, EachIsDoneOnceByAThreadWithItsOwnScratch) {
         [](std::size_t, int) {});
 }
 
+TEST(ZeroedArray, IsZeroUntilItIsWrittenTo) {
+    ZeroedArray<std::uint32_t> array(1 << 20);
+    for (std::size_t n = 0; n < std::size_t(1) << 20; ++n)
+        ASSERT_EQ(array[n], 0u);
+    array[5] = 7;
+    EXPECT_EQ(array[5], 7u);
+    array = ZeroedArray<std::uint32_t>(8);
+    EXPECT_EQ(array[5], 0u);
+    const ZeroedArray<std::uint8_t> none(0);
+}
+
 TEST(Parallel, PiecesOfWorkAreDoneOnceEach) {
     for (const int threads : {1, 2, 40}) {
         std::atomic<int> first = 0, second = 0, third = 0;
@@ -363,6 +375,10 @@ TEST(Parallel, PiecesOfWorkAreDoneOnceEach) {
         EXPECT_EQ(second, 1);
         EXPECT_EQ(third, 10);
     }
+    std::vector<int> order;
+    parallelInvoke(
+        1, [&] { order.push_back(1); }, [&] { order.push_back(2); }, [&] { order.push_back(3); });
+    EXPECT_EQ(order, (std::vector{1, 2, 3}));
     EXPECT_THROW(parallelInvoke(
                      2, [] {}, [] { throw std::runtime_error("the second"); }),
                  std::runtime_error);
