@@ -42,13 +42,16 @@ constexpr Neighbourhood wideZ(Neighbourhood m) {
     return m | m << 9 | m >> 9;
 }
 
-/// The set with its 6-neighbours, and with its 18-neighbours.
+/// The set with its 6-neighbours, with its 18-neighbours, and with its 26-neighbours.
 constexpr Neighbourhood dilated6(Neighbourhood m) {
     return wideX(m) | wideY(m) | wideZ(m);
 }
 constexpr Neighbourhood dilated18(Neighbourhood m) {
     const Neighbourhood y = wideY(m), z = wideZ(m);
     return wideX(y | z) | wideZ(y);
+}
+constexpr Neighbourhood dilated26(Neighbourhood m) {
+    return wideX(wideY(wideZ(m)));
 }
 
 /// The component of `within` that holds `seed`.
@@ -86,6 +89,12 @@ Neighbourhood geodesic6(Neighbourhood object) {
     return dilated6(dilated6(object & six) & object) & object;
 }
 
+/// N₆²(x, X): the faces in X, and the edges in X next to one of those.
+Neighbourhood geodesic6Of26(Neighbourhood object) {
+    object &= eighteen;
+    return dilated6(object & six) & object;
+}
+
 // What 18-adjacent steps from the 18-neighbours reach in two is N₁₈², and in more no more.
 Neighbourhood background(Neighbourhood object) {
     return ~object & twentySix;
@@ -104,6 +113,19 @@ int topologicalNumber18(Neighbourhood object) {
 bool isSimple(Neighbourhood object) {
     return isOneComponent<dilated6>(geodesic6(object), six) &&
            isOneComponent<dilated18>(background(object), eighteen);
+}
+
+int topologicalNumber6Of26(Neighbourhood object) {
+    return countComponents<dilated6>(geodesic6Of26(object), six);
+}
+
+int topologicalNumber26(Neighbourhood object) {
+    return countComponents<dilated26>(background(object), twentySix);
+}
+
+bool isSimpleEitherWay(Neighbourhood object) {
+    return isSimple(object) && isOneComponent<dilated6>(geodesic6Of26(object), six) &&
+           isOneComponent<dilated26>(background(object), twentySix);
 }
 
 }  // namespace haustra

@@ -1,6 +1,6 @@
 // Simple points and topological numbers of digital topology (Bertrand, Pattern Recognition Letters
 // 15:1003, 1994; dissertation §3.3.2.1) for an object of 6-connected voxels in a background of
-// 18-connected ones.
+// 18-connected ones, and of 26-connected ones.
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,13 @@ int topologicalNumber18(Neighbourhood object);
 /// Both are 1: adding x to the object, or taking it away, changes no topology. Bit-parallel, some
 /// tens of nanoseconds; any thread.
 bool isSimple(Neighbourhood object);
+
+/// T₆(x, X), which goes with a 26-connected background: 6-connected components in N₆²(x, X).
+int topologicalNumber6Of26(Neighbourhood object);
+/// T₂₆(x, X̄): 26-connected components of the background in N₂₆¹(x, X̄).
+int topologicalNumber26(Neighbourhood object);
+/// All four are 1: no topology changes whether corners join the background (the (6, 26) pair) or
+/// not (the (6, 18) pair).
+bool isSimpleEitherWay(Neighbourhood object);
 
 }  // namespace haustra

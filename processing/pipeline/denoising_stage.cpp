@@ -16,7 +16,7 @@ using organs::ExpectedTopology;
 using store::Attributes;
 
 // Raise it whenever the lumen changes for the same input and options.
-constexpr int denoisingVersion = 5;
+constexpr int denoisingVersion = 6;
 
 // Products that a lumen could come by but this one, which is made from `source`, does not, with all
 // that is made from them: what an earlier call cleansed is no part of a case that is not cleansed

@@ -107,7 +107,7 @@ public:
     BitMask grow(const std::vector<glm::ivec3>& path) && {
         add(path.front());
         for (const glm::ivec3 v : path) {
-            if (!ball_.test(v) && domain_.test(v) && isSimple(ball_.around(v))) add(v);
+            if (!ball_.test(v) && domain_.test(v) && isSimpleEitherWay(ball_.around(v))) add(v);
         }
         do {
             runQueue();
@@ -139,7 +139,7 @@ private:
             const GrowthQueue::First first = queue_.pop();
             const glm::ivec3 v = first.voxel.voxel();
             if (ball_.test(v)) continue;  // the path has been here
-            if (isSimple(ball_.around(v))) {
+            if (isSimpleEitherWay(ball_.around(v))) {
                 add(v);
                 if (progress_ && ++added % 65536 == 0)
                     progress_(std::min(1.0, double(added) / double(all)));
@@ -156,7 +156,7 @@ private:
         std::stable_sort(leftovers_.begin(), leftovers_.end(),
                          [&](glm::ivec3 a, glm::ivec3 b) { return priorityOf(a) > priorityOf(b); });
         const auto takeIfSimple = [&](glm::ivec3 v) {
-            const bool simple = isSimple(ball_.around(v));
+            const bool simple = isSimpleEitherWay(ball_.around(v));
             if (simple) add(v);
             return simple;
         };

@@ -13,8 +13,10 @@ namespace haustra::topology {
 inline constexpr double priorityStep = 0.1;       ///< δ: what a voxel that is not simple falls by
 inline constexpr double priorityThreshold = 0.8;  ///< T_th: below it the voxel is left out
 
-/// A subset of `domain` with the topology of a ball under the (6, 18) pair, by construction: it
-/// begins with one voxel and every other is added as a simple point.
+/// A subset of `domain` with the topology of a ball by construction: it begins with one voxel and
+/// every other is added as a simple point. The dissertation asks that of the (6, 18) pair; it is
+/// asked of the (6, 26) pair, too, so that whoever joins the background through corners counts no
+/// handle either.
 ///
 /// First `path` is followed as far as it is 6-connected and each voxel simple; then the domain's
 /// voxels that the ball reaches are taken in order of priority, which is the distance to the

@@ -17,26 +17,57 @@ Word next(const Word* row, std::size_t word, std::size_t words) {
     return row[word] >> 1 | (word + 1 < words ? row[word + 1] << 63 : Word(0));
 }
 
-/// χ of the cells whose lowest corner lies in row (j, k).
-long eulerOfRow(const BitMask& object, int j, int k) {
-    const Word *a = object.row(j, k), *b = object.row(j + 1, k), *c = object.row(j, k + 1),
-               *d = object.row(j + 1, k + 1);
+long count(Word bits) {
+    return long(std::popcount(bits));
+}
+
+/// The eight voxels around each of 64 corners: bits of rows (j, k), (j + 1, k), (j, k + 1) and
+/// (j + 1, k + 1), and the same one voxel on.
+struct EightVoxels {
+    Word p, q, r, s, P, Q, R, S;
+};
+
+long openCornersOf(const EightVoxels& v) {
+    const auto [p, q, r, s, P, Q, R, S] = v;
+    return count(~p & ~S & q & r & s & P & Q & R) + count(~P & ~s & p & q & r & Q & R & S) +
+           count(~q & ~R & p & r & s & P & Q & S) + count(~Q & ~r & p & q & s & P & R & S);
+}
+
+/// χ of the cells with these corners lowest.
+long eulerOf(const EightVoxels& v) {
+    const auto [p, q, r, s, P, Q, R, S] = v;
+    const Word pq = p & q, pr = p & r, PQ = P & Q, PR = P & R;
+    return count(p) - count(p & P) - count(pq) - count(pr) + count(pq & PQ) + count(pr & PR) +
+           count(pq & r & s) - count(pq & r & s & PQ & R & S) + openCornersOf(v);
+}
+
+/// The sum of `of` over all corners of the grid with an object voxel around them.
+template <class Of>
+long sumOverCorners(const BitMask& object, int threads, const Of& of) {
+    const glm::ivec3 size = object.size();
     const std::size_t words = object.rowWords();
-    long sum = 0;
-    const auto count = [](Word bits) { return long(std::popcount(bits)); };
-    for (std::size_t w = 0; w < words; ++w) {
-        const Word p = a[w], q = b[w], r = c[w], s = d[w];
-        const Word P = next(a, w, words), Q = next(b, w, words), R = next(c, w, words),
-                   S = next(d, w, words);
-        if (!(p | q | r | s | P | Q | R | S)) continue;
-        const Word pq = p & q, pr = p & r, PQ = P & Q, PR = P & R;
-        sum += count(p) - count(p & P) - count(pq) - count(pr);
-        sum += count(pq & PQ) + count(pr & PR) + count(pq & r & s);
-        sum -= count(pq & r & s & PQ & R & S);
-        sum += count(~p & ~S & q & r & s & P & Q & R) + count(~P & ~s & p & q & r & Q & R & S) +
-               count(~q & ~R & p & r & s & P & Q & S) + count(~Q & ~r & p & q & s & P & R & S);
-    }
-    return sum;
+    std::vector<long> ofSlice(std::size_t(size.z), 0);
+    parallelFor(ofSlice.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slice = begin; slice < end; ++slice) {
+            const int k = int(slice);
+            for (int j = 0; j < size.y; ++j) {
+                const Word *a = object.row(j, k), *b = object.row(j + 1, k),
+                           *c = object.row(j, k + 1), *d = object.row(j + 1, k + 1);
+                for (std::size_t w = 0; w < words; ++w) {
+                    const EightVoxels v{a[w],
+                                        b[w],
+                                        c[w],
+                                        d[w],
+                                        next(a, w, words),
+                                        next(b, w, words),
+                                        next(c, w, words),
+                                        next(d, w, words)};
+                    if (v.p | v.q | v.r | v.s | v.P | v.Q | v.R | v.S) ofSlice[slice] += of(v);
+                }
+            }
+        }
+    });
+    return std::accumulate(ofSlice.begin(), ofSlice.end(), 0L);
 }
 
 /// The runs of a row's bits, inverted where `flip` is all ones, from bit 0 of the row (i = −1).
@@ -157,15 +188,11 @@ BitMask maskOf(const Volume<std::uint8_t>& labels, int threads) {
 }
 
 long eulerCharacteristic(const BitMask& object, int threads) {
-    const glm::ivec3 size = object.size();
-    std::vector<long> ofSlice(std::size_t(size.z), 0);
-    parallelFor(ofSlice.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            for (int j = 0; j < size.y; ++j)
-                ofSlice[k] += eulerOfRow(object, j, int(k));
-        }
-    });
-    return std::accumulate(ofSlice.begin(), ofSlice.end(), 0L);
+    return sumOverCorners(object, threads, eulerOf);
+}
+
+long openCorners(const BitMask& object, int threads) {
+    return sumOverCorners(object, threads, openCornersOf);
 }
 
 MaskComponents objectComponents(const BitMask& object) {
@@ -189,6 +216,11 @@ DigitalTopology digitalTopology(const BitMask& object, int threads) {
 
 DigitalTopology digitalTopology(const Volume<std::uint8_t>& labels, int threads) {
     return digitalTopology(maskOf(labels, threads), threads);
+}
+
+bool isBallEitherWay(const Volume<std::uint8_t>& labels, int threads) {
+    const BitMask object = maskOf(labels, threads);
+    return digitalTopology(object, threads).isBall() && openCorners(object, threads) == 0;
 }
 
 }  // namespace haustra::topology

@@ -34,6 +34,13 @@ BitMask maskOf(const Volume<std::uint8_t>& labels, int threads = 0);
 /// background is not 18-connected, and the object closes the way between them.
 long eulerCharacteristic(const BitMask& object, int threads = 0);
 
+/// Corners where just two opposite voxels of eight are background: there it is joined under the
+/// (6, 26) pair alone. Where there are none, that pair counts what the (6, 18) pair does.
+long openCorners(const BitMask& object, int threads = 0);
+
+/// Whether the labels are a ball under the (6, 18) and under the (6, 26) pair.
+bool isBallEitherWay(const Volume<std::uint8_t>& labels, int threads = 0);
+
 /// Voxels [begin, end) of row (j, k), of one component.
 struct MaskRun {
     std::int32_t begin, end, j, k;

@@ -41,8 +41,7 @@ bool printLine(const std::filesystem::path& file, int threads, const std::string
     }
     std::printf("%-24s %10zu %6ld %9ld %8ld | %6s %6ld %8zu %8zu %6.2f %6.2f | ",
                 file.filename().c_str(), voxels, before.components, before.cavities,
-                before.handles(),
-                topology::digitalTopology(cut->labels, threads).isBall() ? "yes" : "NO",
+                before.handles(), topology::isBallEitherWay(cut->labels, threads) ? "yes" : "NO",
                 cut->cavitiesFilled, cut->voxelsRemoved, cut->voxelsAdded,
                 1e-3 * (milliseconds() - wall), 1e-3 * (cpuMilliseconds() - cpu));
     wall = milliseconds(), cpu = cpuMilliseconds();

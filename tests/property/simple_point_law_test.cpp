@@ -75,7 +75,7 @@ int topologicalNumberByDefinition(const std::array<bool, 27>& inSet, const Adjac
 }
 
 void expectAgrees(Neighbourhood object) {
-    static const Adjacency sixAdjacency(6), eighteenAdjacency(18);
+    static const Adjacency sixAdjacency(6), eighteenAdjacency(18), twentySixAdjacency(26);
     std::array<bool, 27> inside, outside;
     for (int v = 0; v < 27; ++v) {
         inside[std::size_t(v)] = object >> v & 1u;
@@ -86,6 +86,12 @@ void expectAgrees(Neighbourhood object) {
     ASSERT_EQ(topologicalNumber6(object), t6) << std::hex << object;
     ASSERT_EQ(topologicalNumber18(object), t18) << std::hex << object;
     ASSERT_EQ(isSimple(object), t6 == 1 && t18 == 1) << std::hex << object;
+    const int t6Of26 = topologicalNumberByDefinition(inside, sixAdjacency, 2);
+    const int t26 = topologicalNumberByDefinition(outside, twentySixAdjacency, 1);
+    ASSERT_EQ(topologicalNumber6Of26(object), t6Of26) << std::hex << object;
+    ASSERT_EQ(topologicalNumber26(object), t26) << std::hex << object;
+    ASSERT_EQ(isSimpleEitherWay(object), t6 == 1 && t18 == 1 && t6Of26 == 1 && t26 == 1)
+        << std::hex << object;
 }
 
 /// The bits of `number` put where `mask` has ones.
@@ -137,11 +143,18 @@ TEST(SimplePoint, TheVoxelItselfDoesNotCount) {
     }
 }
 
+/// By how much the Euler characteristic grows where a voxel is added: by 1 less that of what it is
+/// attached to, a part of a sphere with `object` components that leaves `background` of it.
+long eulerGrowth(int object, int background) {
+    const long attached = object == 0 ? 0 : background == 0 ? 2 : 1 + object - background;
+    return 1 - attached;
+}
+
 TEST(SimplePoint, AddingOneChangesNoTopologyAndAddingAnyOtherDoes) {
     // Random sets in a small grid: components, cavities and Euler characteristic, counted over the
     // whole grid, change exactly where the voxel is not simple.
     std::mt19937 random(11);
-    long simple = 0, other = 0;
+    long simple = 0, either = 0, other = 0;
     for (int trial = 0; trial < 20'000; ++trial) {
         BitMask mask(glm::ivec3(5));
         const unsigned percent = 5 + random() % 90;
@@ -151,51 +164,66 @@ TEST(SimplePoint, AddingOneChangesNoTopologyAndAddingAnyOtherDoes) {
         const glm::ivec3 v(random() % 5, random() % 5, random() % 5);
         mask.reset(v);
         const DigitalTopology before = digitalTopology(mask, 1);
-        const bool isSimplePoint = isSimple(mask.around(v));
-        const int t6 = topologicalNumber6(mask.around(v));
-        const int t18 = topologicalNumber18(mask.around(v));
+        const long openBefore = openCorners(mask, 1);
+        const Neighbourhood around = mask.around(v);
         mask.set(v);
         const DigitalTopology after = digitalTopology(mask, 1);
-        if (isSimplePoint) {
+        const long openAfter = openCorners(mask, 1);
+        if (isSimple(around)) {
             ASSERT_EQ(before, after);
         }
-        // χ changes by 1 less that of what the voxel is attached to: a part of a sphere with T₆
-        // components that leaves T₁₈ of it.
-        const long attached = t6 == 0 ? 0 : t18 == 0 ? 2 : 1 + t6 - t18;
-        ASSERT_EQ(after.eulerCharacteristic - before.eulerCharacteristic, 1 - attached);
-        (isSimplePoint ? simple : other) += 1;
+        if (isSimpleEitherWay(around)) {
+            ASSERT_TRUE(isSimple(around));
+            ASSERT_EQ(openBefore, openAfter);
+        }
+        const long growth = after.eulerCharacteristic - before.eulerCharacteristic;
+        ASSERT_EQ(growth, eulerGrowth(topologicalNumber6(around), topologicalNumber18(around)));
+        // Under the (6, 26) pair χ is less by the open corners.
+        ASSERT_EQ(growth - (openAfter - openBefore),
+                  eulerGrowth(topologicalNumber6Of26(around), topologicalNumber26(around)));
+        (isSimple(around) ? simple : other) += 1;
+        either += isSimpleEitherWay(around);
     }
-    EXPECT_GT(simple, 1000);
+    EXPECT_GT(either, 1000);
+    EXPECT_GT(simple, either);
     EXPECT_GT(other, 1000);
 }
 
 TEST(SimplePoint, EveryAcceptedAdditionLeavesABallABall) {
-    // Grown voxel by voxel in random order, inside noise, until nothing is simple.
+    // Grown voxel by voxel in random order, inside noise, until nothing is simple: under the
+    // (6, 18) pair, which leaves open corners, and either way, which leaves none.
     std::mt19937 random(13);
-    long added = 0;
-    for (int trial = 0; trial < 60; ++trial) {
+    long added = 0, open = 0;
+    for (int trial = 0; trial < 120; ++trial) {
         constexpr int side = 9;
+        const bool eitherWay = trial % 2 == 1;
+        const auto accepted = eitherWay ? isSimpleEitherWay : isSimple;
         const unsigned percent = 50 + random() % 51;
         BitMask ball{glm::ivec3(side)};
-        std::vector<glm::ivec3> open;
+        std::vector<glm::ivec3> candidates;
         for (int n = 0; n < side * side * side; ++n) {
             const glm::ivec3 v(n % side, n / side % side, n / side / side);
-            if (random() % 100 < percent) open.push_back(v);
+            if (random() % 100 < percent) candidates.push_back(v);
         }
-        ball.set(open.front());
+        ball.set(candidates.front());
         for (bool any = true; any;) {
             any = false;
-            std::shuffle(open.begin(), open.end(), random);
-            for (const glm::ivec3 v : open) {
-                if (ball.test(v) || !isSimple(ball.around(v))) continue;
+            std::shuffle(candidates.begin(), candidates.end(), random);
+            for (const glm::ivec3 v : candidates) {
+                if (ball.test(v) || !accepted(ball.around(v))) continue;
                 ball.set(v);
                 any = true;
                 ++added;
                 ASSERT_TRUE(digitalTopology(ball, 1).isBall());
+                if (eitherWay) {
+                    ASSERT_EQ(openCorners(ball, 1), 0);
+                }
             }
         }
+        open += openCorners(ball, 1);
     }
-    EXPECT_GT(added, 10'000);
+    EXPECT_GT(added, 20'000);
+    EXPECT_GT(open, 0);
 }
 
 }  // namespace

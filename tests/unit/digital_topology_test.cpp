@@ -64,6 +64,35 @@ TEST(DigitalTopology, FacesJoinTheObjectAndEdgesTheBackground) {
     expectTopology(pair({3, 3, 3}, true), 1, 2, 0);
 }
 
+TEST(DigitalTopology, ACornerBetweenTwoHolesIsOpenForThoseWhoJoinThemThere) {
+    // Of two single holes in a block, as of the other generator's scorer, which counts by (6, 26).
+    const auto open = [](glm::ivec3 other) {
+        Volume<std::uint8_t> block(axisAlignedGrid({6, 6, 6}, glm::dvec3(1.0)), std::uint8_t(1));
+        block.writable()[block.grid().index(2, 2, 2)] = 0;
+        block.writable()[block.grid().index(other.x, other.y, other.z)] = 0;
+        return openCorners(maskOf(block));
+    };
+    for (const int x : {1, 3}) {
+        for (const int y : {1, 3}) {
+            for (const int z : {1, 3})
+                EXPECT_EQ(open({x, y, z}), 1);
+        }
+    }
+    EXPECT_EQ(open({2, 2, 3}), 0);
+    EXPECT_EQ(open({2, 3, 3}), 0);
+    EXPECT_EQ(open({4, 4, 4}), 0);
+    // From the border inwards, corner by corner: a ball that is none with such corners.
+    Volume<std::uint8_t> block(axisAlignedGrid({7, 7, 7}, glm::dvec3(1.0)), std::uint8_t(1));
+    EXPECT_TRUE(isBallEitherWay(block));
+    block.writable()[block.grid().index(0, 3, 3)] = 0;
+    EXPECT_TRUE(isBallEitherWay(block));
+    block.writable()[block.grid().index(1, 4, 4)] = 0;
+    block.writable()[block.grid().index(1, 5, 4)] = 0;
+    block.writable()[block.grid().index(0, 5, 4)] = 0;
+    EXPECT_TRUE(digitalTopology(block).isBall());
+    EXPECT_FALSE(isBallEitherWay(block)) << "a way through the corner comes out again";
+}
+
 /// Components of the voxels where `mask` equals `value`, flooded one voxel at a time.
 long componentsByFlooding(const BitMask& mask, bool value, int most, int margin) {
     const glm::ivec3 size = mask.size() + 2 * margin;
@@ -103,6 +132,7 @@ long componentsByFlooding(const BitMask& mask, bool value, int most, int margin)
 
 TEST(DigitalTopology, AgreesWithFloodingOnRandomMasks) {
     std::mt19937 random(3);
+    int withoutOpenCorners = 0;
     for (int trial = 0; trial < 300; ++trial) {
         // Rows of one word, just past one, and past two.
         const std::array<int, 4> widths{7, 62, 63, 130};
@@ -117,7 +147,11 @@ TEST(DigitalTopology, AgreesWithFloodingOnRandomMasks) {
         ASSERT_EQ(t.components, componentsByFlooding(mask, true, 1, 0));
         ASSERT_EQ(t.cavities, componentsByFlooding(mask, false, 2, 1) - 1);
         ASSERT_GE(t.handles(), 0);
+        if (openCorners(mask, 1 + trial % 3) > 0) continue;
+        ASSERT_EQ(t.cavities, componentsByFlooding(mask, false, 3, 1) - 1);
+        ++withoutOpenCorners;
     }
+    EXPECT_GT(withoutOpenCorners, 50);
 }
 
 }  // namespace

@@ -49,6 +49,20 @@ void fillStrut(Volume<std::uint8_t>& mask, const Strut& strut) {
     }
 }
 
+/// Whether one of the eight corners of a voxel of the mask is open (openCorners).
+bool touchesOpenCorner(const BitMask& mask, glm::ivec3 v) {
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::ivec3 low = v - glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        BitMask eight(glm::ivec3(2));
+        for (int n = 0; n < 8; ++n) {
+            const glm::ivec3 at(n & 1, n >> 1 & 1, n >> 2);
+            if (mask.test(low + at)) eight.set(at);
+        }
+        if (openCorners(eight) > 0) return true;
+    }
+    return false;
+}
+
 struct Planted {
     glm::dvec3 spacing;
     double turnX, turnZ;  ///< of the whole phantom, radians
@@ -81,13 +95,20 @@ TEST_P(PlantedHandles, AreCutWithinAVoxelOfTheirThinnestSection) {
     ASSERT_EQ(digitalTopology(mask).handles(), 3);
 
     const CutLumen result = cut(mask);
-    EXPECT_TRUE(digitalTopology(result.labels).isBall());
+    EXPECT_TRUE(isBallEitherWay(result.labels));
     EXPECT_EQ(result.handlesCut, 3);
     EXPECT_EQ(result.voxelsAdded, 0u);
     const double voxelMm = std::max({spacing.x, spacing.y, spacing.z});
     std::vector<int> removed(struts.size(), 0);
+    const BitMask before = maskOf(mask);
+    long atCorners = 0;
     for (std::size_t n = 0; n < mask.writable().size(); ++n) {
         if (mask[n] == 0 || result.labels[n] != 0) continue;
+        // A step of the tube's own wall that is a handle under the (6, 26) pair.
+        if (touchesOpenCorner(before, mask.grid().voxelAt(n))) {
+            ++atCorners;
+            continue;
+        }
         const glm::dvec3 p = mask.grid().patientFromVoxelPoint(mask.grid().voxelAt(n));
         std::size_t nearest = 0;
         for (std::size_t s = 1; s < struts.size(); ++s) {
@@ -102,6 +123,7 @@ TEST_P(PlantedHandles, AreCutWithinAVoxelOfTheirThinnestSection) {
         EXPECT_LE(glm::distance(p, strut.waist()), strut.waistMm + 1.5 * voxelMm);
         ++removed[nearest];
     }
+    EXPECT_LE(atCorners, openCorners(before));
     // A sheet: as many voxels as the section's projection along the grid has, with some to spare
     // for steps.
     const glm::dvec3 faces(spacing.y * spacing.z, spacing.x * spacing.z, spacing.x * spacing.y);
@@ -150,7 +172,7 @@ TEST(HandleCutting, KeepsWhatIsOneVoxelThin) {
                 set(i, 2, k);
         }
         const CutLumen result = cut(mask);
-        EXPECT_TRUE(digitalTopology(result.labels).isBall());
+        EXPECT_TRUE(isBallEitherWay(result.labels));
         EXPECT_EQ(result.handlesCut, 1);
         EXPECT_EQ(result.voxelsRemoved, 1u);
     }
@@ -185,7 +207,7 @@ TEST(HandleCutting, TiesAnIslandToTheNearestWallAndSaysSo) {
     tube.mask.writable()[tube.mask.grid().index(16, 16, 70)] = 0;
     tube.mask.writable()[tube.mask.grid().index(17, 17, 71)] = 0;  // shares no more than a corner
     const CutLumen result = cut(tube.mask);
-    EXPECT_TRUE(digitalTopology(result.labels).isBall());
+    EXPECT_TRUE(isBallEitherWay(result.labels));
     EXPECT_EQ(result.islandsTied, 1);
     EXPECT_EQ(result.cavitiesFilled, 3);
     EXPECT_EQ(result.handlesCut, 0);
@@ -225,7 +247,7 @@ TEST(HandleCutting, LaysAStalkWhereTheScanShowsItsTrace) {
     options.hu = &hu;
     const auto result = cutHandles(tube.mask, options);
     ASSERT_TRUE(result) << describe(result.error());
-    EXPECT_TRUE(digitalTopology(result->labels).isBall());
+    EXPECT_TRUE(isBallEitherWay(result->labels));
     EXPECT_EQ(result->islandsTied, 1);
     const auto stalk = tube.stalk(*result);
     EXPECT_GE(stalk.size(), 11u);
@@ -264,7 +286,7 @@ TEST(HandleCutting, JoinsPiecesAndLeavesCrumbsOut) {
     mask.writable()[0] = 1;
     ASSERT_EQ(digitalTopology(mask).components, 4);
     const CutLumen result = cut(mask);
-    EXPECT_TRUE(digitalTopology(result.labels).isBall());
+    EXPECT_TRUE(isBallEitherWay(result.labels));
     EXPECT_EQ(result.notes.size(), 3u);  // the crumb and two bridges
     EXPECT_EQ(result.voxelsRemoved, 1u);
     std::size_t bridge = 0;
@@ -298,7 +320,7 @@ TEST(HandleCutting, CutsTheLeakAndNotTheBridgeAcrossACollapse) {
         fillStrut(mask, {{-26, 0, 15}, {26, 0, 15}, 0.5, 3.0, 0.1});
         ASSERT_EQ(digitalTopology(mask).handles(), 1);
         const CutLumen result = cut(mask);
-        EXPECT_TRUE(digitalTopology(result.labels).isBall());
+        EXPECT_TRUE(isBallEitherWay(result.labels));
         std::size_t leakCut = 0, bridgeCut = 0;
         for (std::size_t n = 0; n < mask.voxels().size(); ++n) {
             if (mask[n] == 0 || result.labels[n] != 0) continue;
@@ -321,7 +343,7 @@ TEST(HandleCutting, MakesABallOfAnything) {
         for (std::uint8_t& label : mask.writable())
             label = random() % 100 < percent ? 1 + random() % 2 : 0;
         const CutLumen result = cut(mask);
-        ASSERT_TRUE(digitalTopology(result.labels).isBall()) << percent;
+        ASSERT_TRUE(isBallEitherWay(result.labels)) << percent;
         const BitMask ball = maskOf(result.labels);
         std::size_t removed = 0, added = 0;
         for (std::size_t n = 0; n < mask.writable().size(); ++n) {
@@ -332,7 +354,7 @@ TEST(HandleCutting, MakesABallOfAnything) {
             if (result.labels[n] != 0) {
                 EXPECT_EQ(result.labels[n], mask[n]);
             } else if (result.islandsTied == 0) {
-                EXPECT_FALSE(isSimple(ball.around(v)));
+                EXPECT_FALSE(isSimpleEitherWay(ball.around(v)));
             }
         }
         withoutStalks += result.islandsTied == 0;
@@ -363,7 +385,7 @@ TEST(HandleCutting, RefusesAnEmptyLumen) {
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().kind, ErrorKind::noResult);
     Volume<std::uint8_t> full(axisAlignedGrid({9, 9, 9}, glm::dvec3(1.0)), std::uint8_t(1));
-    EXPECT_TRUE(digitalTopology(cut(full).labels).isBall());
+    EXPECT_TRUE(isBallEitherWay(cut(full).labels));
 }
 
 }  // namespace
