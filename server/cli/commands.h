@@ -16,6 +16,7 @@ namespace haustra::cli {
 struct Command {
     CLI::App* app;
     std::function<Result<void>()> run;
+    bool wantsLargePages = false;  ///< it walks through gigabytes for a long time (useLargePages)
 };
 
 Command addPhantom(CLI::App& program);

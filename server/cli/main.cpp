@@ -1,5 +1,6 @@
 // haustra: everything offline, from a phantom to pictures.
 #include "cli/commands.h"
+#include "core/large_pages.h"
 #include "core/version.h"
 #include "store/lost_pages.h"
 
@@ -48,6 +49,7 @@ int runProgram(int argc, char** argv) {
         program.parse(argc, argv);
         for (const auto& command : commands) {
             if (!command.app->parsed()) continue;
+            if (command.wantsLargePages) haustra::useLargePages(argv);
             const auto done = command.run();
             if (!done) return failed(haustra::describe(done.error()));
             if (std::fflush(stdout) != 0 || std::ferror(stdout))

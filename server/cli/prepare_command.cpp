@@ -225,7 +225,7 @@ Command addPrepare(CLI::App& program) {
         if (arguments->options.series.empty() && arguments->options.until == "import")
             throw CLI::ValidationError("--until import", "a mask has no import without SERIES");
     });
-    return {command, [arguments] { return runPrepare(*arguments); }};
+    return {command, [arguments] { return runPrepare(*arguments); }, true};
 }
 
 }  // namespace haustra::cli

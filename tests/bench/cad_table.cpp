@@ -8,6 +8,7 @@
 #include "cad/lesion_features.h"
 #include "cad/strip_raster.h"
 #include "cad/truth.h"
+#include "core/large_pages.h"
 #include "core/parallel.h"
 #include "pictures/picture_file.h"
 #include "pipeline/colon_inputs.h"
@@ -233,6 +234,7 @@ Result<void> run(const std::string& root, const std::string& name, const std::st
 }  // namespace
 
 int main(int argc, char** argv) {
+    haustra::useLargePages(argv);  // as haustra prepare does
     if (argc < 3) {
         std::fprintf(stderr, "usage: cad_table STORE CASE [TRUTH.json|- [CLUSTERS.png]]\n");
         return 2;
