@@ -13,8 +13,8 @@ namespace haustra::cad {
 /// found it, of which it is another level, and features; JSON, a line each, numbers so that they
 /// read back the same.
 std::string candidateTable(const std::vector<Candidate>& candidates);
-/// Reads it back; bodies, rims, voxels and probabilities are empty. Fails (badInput) where the text
-/// is none, (unsupported) where it has other features than this program.
+/// Reads it back; what else a candidate has (samples, body, voxels, probability) is empty. Fails
+/// (badInput) where the text is none, (unsupported) where it has other features than this program.
 Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const std::string& place);
 
 }  // namespace haustra::cad

@@ -34,9 +34,9 @@ struct WitnessedPlace {
 bool isSamePlace(glm::dvec3 oneMm, double oneDiameterMm, glm::dvec3 otherMm,
                  double otherDiameterMm);
 
-/// The most probable place first. A witness is of the first place that is the same as its own, by
-/// their centres, or of a new one. Other levels of what is not worth another look are
-/// no witnesses. O(witnesses · places).
+/// By the most probable of their witnesses, the greatest first. A witness is of the first place
+/// that is the same as its own, by their centres, or of a new one. Other levels of what is not
+/// worth another look are no witnesses. O(witnesses · places).
 std::vector<WitnessedPlace> placesOf(std::span<const PlaceWitness> witnesses);
 
 /// ln(p / (1 − p)), of probabilities from 1e-6 to 1 − 1e-6.

@@ -28,7 +28,7 @@ struct Example {
     std::int32_t levelOf = -1;  ///< as Candidate has it; of another level: a witness alone
 };
 /// One case's candidates. A polyp is stood for by those that it is reached from and that are at
-/// least half as wide, or else by the largest; by none of another level.
+/// least half as wide, and by the one of the largest area; by none of another level.
 std::vector<Example> examplesOf(const std::vector<Candidate>& candidates,
                                 const std::vector<TrueLesion>& truth);
 

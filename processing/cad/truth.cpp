@@ -36,7 +36,9 @@ TrueLesion lesionOfTruth(const nlohmann::json& read) {
     lesion.diameterMm = diameterOfTruth(read.at("diameter_mm"));
     lesion.heightMm = read.value("height_mm", 0.0);
     lesion.kind = read.value("kind", "");
-    lesion.neoplastic = read.value("neoplastic", true);
+    lesion.neoplastic = read.value("neoplastic", !lesion.hyperplastic());
+    if (lesion.neoplastic && lesion.hyperplastic())
+        throw std::invalid_argument("a hyperplastic one is called neoplastic");
     if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
     lesion.submergedShare = read.value("submerged_share", 0.0);
     lesion.untaggedShare = read.value("untagged_share", 0.0);
@@ -81,6 +83,8 @@ Result<std::vector<TrueLesion>> mimicsOfJson(const std::string& text, const std:
     constexpr double lipsMm = 20.0;
     try {
         const auto json = nlohmann::json::parse(text);
+        if (!json.contains("valve") && !json.contains("rectal_tube"))
+            throw std::invalid_argument("it has neither valve nor rectal_tube");
         std::vector<TrueLesion> mimics;
         const auto add = [&](const char* kind, const nlohmann::json& at, double diameterMm) {
             TrueLesion mimic;

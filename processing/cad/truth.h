@@ -46,9 +46,10 @@ struct TrueLesion {
 /// A list of lesions: {"growths": [{"kind", "neoplastic", "position_mm", "wall_mm", "diameter_mm",
 /// "height_mm", "core_hu", "submerged_share", "untagged_share", "film_mm"}, …]}, other
 /// members not being read; or
-/// {"findings": [{"position_mm", "diameter_mm", "kind"}, …]}, which are all polyps. Fails
-/// (badInput) where it is neither, or a lesion lies outside any body (±100 m) or is wider than 300
-/// mm.
+/// {"findings": [{"position_mm", "diameter_mm", "kind"}, …]}, the same with less told. Of one that
+/// does not tell, all but hyperplastic ones are neoplastic. Fails (badInput) where it is neither,
+/// or a lesion lies outside any body (±100 m), is wider than 300 mm, or is hyperplastic and
+/// neoplastic.
 Result<std::vector<TrueLesion>> truthOfJson(const std::string& text, const std::string& place);
 
 /// Of a phantom's structure.json what may be taken for polyps and is no lesion: the ileocecal valve

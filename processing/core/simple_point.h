@@ -14,9 +14,9 @@ using Neighbourhood = std::uint32_t;
 /// T₆₊(x, X): 6-connected components of the object in the geodesic neighbourhood N₆³(x, X).
 ///
 /// Against an 18-connected background the order is 3, as Bertrand has it; the dissertation prints
-/// his T₆ of order 2, which goes with a 26-connected background. They differ where six voxels
+/// his T₆ of order 2, which goes with a 26-connected background. They differ where five voxels
 /// around a corner lead from one face of x to another: order 2 would refuse x there, although
-/// adding it changes nothing.
+/// adding it changes nothing for an 18-connected background.
 int topologicalNumber6(Neighbourhood object);
 /// T₁₈(x, X̄): 18-connected components of the background in N₁₈²(x, X̄).
 int topologicalNumber18(Neighbourhood object);

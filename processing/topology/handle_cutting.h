@@ -22,6 +22,7 @@ struct HandleCuttingOptions {
 
 struct CutLumen {
     Volume<std::uint8_t> labels;  ///< LumenLabel; a ball by the (6, 18) and the (6, 26) pair
+    /// By the (6, 18) pair: what an open corner alone makes is in `voxelsRemoved`.
     long handlesCut = 0, cavitiesFilled = 0, islandsTied = 0;
     std::size_t voxelsRemoved = 0, voxelsAdded = 0;  ///< against the labels that came in
     std::vector<std::string> notes;

@@ -386,6 +386,30 @@ void sayUnflattened(const std::vector<LoadedCase>& cases, ProgressBar& bar) {
                             each.source.name()));
 }
 
+// Places in RAS in place of LPS, or those of another scan, would otherwise read as a detector that
+// finds nothing.
+void sayTruthElsewhere(const LoadedCase& loaded, const std::vector<cad::Candidate>& candidates,
+                       ProgressBar& bar) {
+    constexpr double farMm = 20.0;
+    const auto isNear = [&](const cad::TrueLesion& lesion) {
+        return std::ranges::any_of(candidates, [&](const cad::Candidate& each) {
+            return lesion.distanceMm(each.lesion.centerMm) < farMm;
+        });
+    };
+    std::size_t polyps = 0;
+    for (const cad::TrueLesion& lesion : loaded.truth) {
+        if (lesion.isPolyp() != true) continue;
+        if (isNear(lesion)) return;
+        ++polyps;
+    }
+    if (polyps > 0)
+        bar.say(
+            fmt::format("{}: warning: not one of its truth's {} polyps lies within {:g} mm of "
+                        "any place that may be one: is that the truth of this scan, with "
+                        "places in DICOM's coordinates (LPS)?",
+                        loaded.source.name(), polyps, farMm));
+}
+
 // Cases of one study are of one patient, and are left out together.
 Result<void> checkStudies(const std::vector<LoadedCase>& cases) {
     std::set<std::string> named;
@@ -407,6 +431,7 @@ Result<std::vector<cad::TrainingCase>> examplesOf(const std::vector<LoadedCase>&
     for (std::size_t n = 0; n < loaded.size(); ++n) {
         bar.show("candidates", double(n) / double(loaded.size()));
         auto candidates = TRY(candidatesOf(loaded[n], arguments, texture, model));
+        sayTruthElsewhere(loaded[n], candidates, bar);
         leaveOut(candidates, arguments);
         cases.push_back({arguments.cases[n], loaded[n].truth,
                          cad::examplesOf(candidates, loaded[n].truth), loaded[n].studyMark});
@@ -623,6 +648,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     // A case that is not there is told of before the first is measured.
     const std::vector<LoadedCase> loaded = TRY(loadCases(store, arguments));
     TRY(checkUnseen(model, loaded, "judged by"));
+    sayUnflattened(loaded, bar);
     if (!arguments.froc.empty() && std::ranges::none_of(loaded, [](const LoadedCase& each) {
             return std::ranges::any_of(each.truth, cad::countsInCurve);
         }))
@@ -634,6 +660,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
         bar.show("detect", double(n) / double(loaded.size()));
         const std::string& name = arguments.cases[n];
         auto all = TRY(candidatesOf(loaded[n], arguments, model.texture, &model));
+        sayTruthElsewhere(loaded[n], all, bar);
         leaveOut(all, arguments);
         if (usesClassifier(arguments))
             cad::weigh(all, model);
@@ -818,11 +845,13 @@ Command addCad(CLI::App& program) {
                        ? std::string()
                        : "\"" + file + "\": a curve is written as .png or .csv";
         });
-    return {command, [forTrain, forCalibrate, forEvaluate, train, calibrate] {
+    return {command,
+            [forTrain, forCalibrate, forEvaluate, train, calibrate] {
                 return train->parsed()       ? runTrain(*forTrain)
                        : calibrate->parsed() ? runCalibrate(*forCalibrate)
                                              : runEvaluate(*forEvaluate);
-            }};
+            },
+            true};
 }
 
 }  // namespace haustra::cli

@@ -43,8 +43,9 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
         ->capture_default_str();
     group->add_flag("--caption", options.caption,
                     "Draw the strip's ends and a scale of millimetres along the centerline");
-    auto* findings = group->add_flag("--findings", options.findings,
-                                     "Colour the case's findings, as the server does");
+    auto* findings =
+        group->add_flag("--findings", options.findings,
+                        "Colour the case's findings green, and what scored lower violet");
     group
         ->add_option("--least-probability", options.leastProbability,
                      "And the candidates below the operating point that are so probable to be a "

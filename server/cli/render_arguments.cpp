@@ -183,8 +183,7 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         .add_option("--paint", my.paint,
                     "A picture of the whole strip, of its shape, as flat-image is without a seam "
                     "margin, that colours the endoscopic view's wall; or findings: the case's own, "
-                    "in all views "
-                    "of the wall")
+                    "in all views of the wall: green, and what scored lower violet")
         ->type_name("FILE.png|.tif|findings")
         ->check([](const std::string& text) {
             std::error_code ignored;

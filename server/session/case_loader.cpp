@@ -32,7 +32,7 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         if (auto surface = readSurface(source))
             prepared.wall = files.facts.surface = std::move(*surface);
         else
-            spdlog::warn("a case's overview has no colon: {}", surface.error().message);
+            spdlog::warn("case {}: its overview has no colon: {}", name, describe(surface.error()));
     }
     if (files.findings) {
         if (auto findings = readFindings(source, files.facts.grid, files.facts.centerline,
@@ -42,11 +42,12 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
             if (auto biopsy = scanBiopsyOf(files.facts.findings->product))
                 files.facts.scanBiopsy = std::move(*biopsy);
             else
-                spdlog::warn("a case opens without its own biopsy colours: {}",
+                spdlog::warn("case {}: it opens without its own biopsy colours: {}", name,
                              describe(biopsy.error()));
         } else {
             files.facts.findingsDamaged = true;
-            spdlog::warn("a case opens without its findings: {}", findings.error().message);
+            spdlog::warn("case {}: it opens without its findings: {}", name,
+                         describe(findings.error()));
         }
     }
     if (!files.facts.centerline.points.empty())

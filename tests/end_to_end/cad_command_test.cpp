@@ -330,6 +330,25 @@ TEST_F(CadCommand, AScanOrStudyThatWasLearntFromIsKnownUnderAnyName) {
     EXPECT_EQ(haustra(with(judging({"other-supine"}), {"--model", model})).exitCode, 0);
 }
 
+// As of another scan, or RAS for LPS: else a detector would seem to find nothing.
+TEST_F(CadCommand, TruthThatLiesElsewhereIsToldOf) {
+    const TemporaryFolder elsewhere;
+    json growths = json::parse(fileContent(fs::path(truth()) / name(6) / "truth" / "growths.json"));
+    for (json& growth : growths["growths"]) {
+        for (const char* place : {"position_mm", "wall_mm"})
+            growth[place] = placeJson(glm::dvec3(28.0));  // a corner of the scan
+    }
+    writeText(elsewhere.path() / name(6) / "growths.json", growths.dump());
+    const std::string word = name(6) + ": warning: not one of its truth's 3 polyps";
+    const auto right = haustra(judging({name(6)}));
+    EXPECT_EQ(right.exitCode, 0) << right.err;
+    EXPECT_EQ(right.err.find(word), std::string::npos) << right.err;
+    const auto wrong =
+        haustra({"cad", "evaluate", "--store", store(), "--truth", elsewhere.path(), name(6)});
+    EXPECT_EQ(wrong.exitCode, 0) << wrong.err;
+    EXPECT_NE(wrong.err.find(word), std::string::npos) << wrong.err;
+}
+
 TEST_F(CadCommand, WhatTellsNothingApartIsNoModel) {
     const TemporaryFolder out;
     const std::string model = out.path() / "model.json";

@@ -554,7 +554,22 @@ TEST(Truth, APhantomsValveAndTubeAreNoLesions) {
     const auto none = cad::mimicsOfJson(R"({"valve":null})", "structure.json");
     EXPECT_TRUE(none && none->empty());
     EXPECT_FALSE(cad::mimicsOfJson("{\"valve\":{}}", "structure.json"));
+    for (const char* other : {"{}", "[]", "3", "null", R"({"growths":[]})"})
+        EXPECT_FALSE(cad::mimicsOfJson(other, "structure.json")) << other;
     EXPECT_FALSE(cad::mimicsOfJson(R"({"rectal_tube":{"axis_mm":[]}})", "structure.json"));
+}
+
+TEST(Truth, AHyperplasticGrowthIsNoPolypUnlessSomebodySaysTwoThings) {
+    const auto lesion = [](const std::string& more) {
+        return cad::truthOfJson(
+            R"({"findings":[{"position_mm":[0,0,0],"diameter_mm":8)" + more + "}]}", "truth.json");
+    };
+    const auto benign = lesion(R"(,"kind":"hyperplastic")"), polyp = lesion(R"(,"kind":"flat")");
+    ASSERT_TRUE(benign && polyp);
+    EXPECT_FALSE(benign->front().neoplastic);
+    EXPECT_EQ(benign->front().isPolyp(), std::nullopt);
+    EXPECT_EQ(polyp->front().isPolyp(), true);
+    EXPECT_FALSE(lesion(R"(,"kind":"hyperplastic","neoplastic":true)"));
 }
 
 TEST(FormerFluid, IsAsFarAsItsNearestPlace) {

@@ -1003,7 +1003,7 @@
     </message>
     <message>
         <source>cecum</source>
-        <translation>Zäkum</translation>
+        <translation>Zökum</translation>
     </message>
     <message>
         <source>%1 %</source>
