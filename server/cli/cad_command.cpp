@@ -845,13 +845,14 @@ Command addCad(CLI::App& program) {
                        ? std::string()
                        : "\"" + file + "\": a curve is written as .png or .csv";
         });
-    return {command,
-            [forTrain, forCalibrate, forEvaluate, train, calibrate] {
-                return train->parsed()       ? runTrain(*forTrain)
-                       : calibrate->parsed() ? runCalibrate(*forCalibrate)
-                                             : runEvaluate(*forEvaluate);
-            },
-            true};
+    return {.app = command,
+            .run =
+                [forTrain, forCalibrate, forEvaluate, train, calibrate] {
+                    return train->parsed()       ? runTrain(*forTrain)
+                           : calibrate->parsed() ? runCalibrate(*forCalibrate)
+                                                 : runEvaluate(*forEvaluate);
+                },
+            .wantsLargePages = true};
 }
 
 }  // namespace haustra::cli

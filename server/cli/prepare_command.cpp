@@ -225,7 +225,9 @@ Command addPrepare(CLI::App& program) {
         if (arguments->options.series.empty() && arguments->options.until == "import")
             throw CLI::ValidationError("--until import", "a mask has no import without SERIES");
     });
-    return {command, [arguments] { return runPrepare(*arguments); }, true};
+    return {.app = command,
+            .run = [arguments] { return runPrepare(*arguments); },
+            .wantsLargePages = true};
 }
 
 }  // namespace haustra::cli
