@@ -28,6 +28,7 @@ using Type = DSRTypes;
 const Code percent("%", "UCUM", "Percent");
 const Code english("en", "RFC5646", "English");
 const Code polypOfColon("68496003", "SCT", "Polyp of colon");
+const Code associatedMorphology("116676008", "SCT", "Associated Morphology");
 const Code findingSite("363698007", "SCT", "Finding Site");
 const Code diameter("81827009", "SCT", "Diameter");
 const Code computedTomography("CT", "DCM", "Computed Tomography");
@@ -48,6 +49,15 @@ Code siteOf(ColonSegment segment) {
             break;
     }
     return {"32713005", "SCT", "Cecum"};
+}
+
+/// CID 6209; none of a kind that it has no code for.
+std::optional<Code> morphologyOf(const std::string& kind) {
+    if (kind == "sessile") return Code("5712003", "SCT", "Sessile");
+    if (kind == "pedunculated") return Code("25126001", "SCT", "Pedunculated");
+    if (kind == "flat") return Code("6041008", "SCT", "Flat");
+    if (kind == annularKind) return Code("255593009", "SCT", "Circumferential");
+    return std::nullopt;
 }
 
 /// CID 19 and 20; none where the position is not known.
@@ -294,11 +304,13 @@ private:
                      e.centerMm + c});
     }
 
-    /// TID 4128, whose order is significant: site, distance from the anus, height, diameter. Of a
-    /// truth there is no more than a diameter, without its ends.
+    /// TID 4128, whose order is significant: morphology, site, distance from the anus, height,
+    /// diameter. Of a truth there is no more than a kind and a diameter, without its ends.
     void descriptors(const Finding& finding) {
         const auto properties = Type::RT_hasProperties;
         const bool detected = !finding.voxels.empty();
+        if (const auto morphology = morphologyOf(finding.kind))
+            out_.code(properties, associatedMorphology, *morphology);
         if (finding.segment) out_.code(properties, findingSite, siteOf(*finding.segment));
         if (detected) {
             length(properties, CODE_DCM_DistanceFromAnus, finding.arcMm);

@@ -256,6 +256,7 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
         // TID 4128 says that their order is significant.
         std::vector<std::string> order{"Distance from anus", "Height", "Diameter"};
         if (is.segment) order.insert(order.begin(), "Finding Site");
+        order.insert(order.begin(), "Associated Morphology");
         std::vector<std::string> written;
         for (const Item& item : feature)
             if (std::ranges::find(order, item.name) != order.end()) written.push_back(item.name);
@@ -271,6 +272,27 @@ TEST_F(ColonCadReport, HasEveryFindingAtItsVeryPlace) {
         }
     }
     expectSound();
+}
+
+TEST_F(ColonCadReport, TellsTheMorphologyThatAFindingIsOf) {
+    // CID 6209.
+    const std::pair<std::string, std::string> kinds[] = {{"sessile", "Sessile"},
+                                                         {"pedunculated", "Pedunculated"},
+                                                         {"flat", "Flat"},
+                                                         {annularKind, "Circumferential"}};
+    for (const auto& [kind, meaning] : kinds) {
+        Findings findings = someFindings();
+        findings.findings[0].kind = kind;
+        const auto feature = below(written(findings), "Composite Feature", 0);
+        const Item* morphology = named(feature, "Associated Morphology");
+        ASSERT_TRUE(morphology) << kind;
+        EXPECT_EQ(morphology->value, meaning);
+        EXPECT_EQ(morphology->relation, "HAS PROPERTIES");
+        expectSound();
+    }
+    // Of what no kind is told nothing is made up.
+    const auto truth = below(written(someFindings()), "Composite Feature", 2);
+    EXPECT_FALSE(named(truth, "Associated Morphology"));
 }
 
 TEST_F(ColonCadReport, OfWallThatIsThickAllAroundSaysThatARuleFoundIt) {
