@@ -13,8 +13,12 @@ bool blamed(const EvaluatedCase& each, const ToldPlace& place) {
     return place.lesion < 0 || each.truth[std::size_t(place.lesion)].isPolyp() == false;
 }
 
-// What a blamed place is.
-const std::string& falseKind(const EvaluatedCase& each, const ToldPlace& place) {
+bool isHyperplastic(const EvaluatedCase& each, const ToldPlace& place) {
+    return place.lesion >= 0 && each.truth[std::size_t(place.lesion)].hyperplastic();
+}
+
+// What a place that is no polyp is.
+const std::string& kindOf(const EvaluatedCase& each, const ToldPlace& place) {
     return place.lesion >= 0 ? each.truth[std::size_t(place.lesion)].kind : place.looksLike;
 }
 
@@ -114,12 +118,12 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
             if (place.score < operatingPoint) continue;
             if (blamed(*each, place)) {
                 ++sum.falsePositives;
-                ++sum.falseKinds[falseKind(*each, place)];
+                ++sum.falseKinds[kindOf(*each, place)];
                 continue;
             }
             const ToldPlace*& told = best[std::size_t(place.lesion)];
             if (!told || place.score > told->score) told = &place;
-            sum.hyperplastic += !each->truth[std::size_t(place.lesion)].neoplastic;
+            sum.hyperplastic += isHyperplastic(*each, place);
         }
         for (std::size_t l = 0; l < best.size(); ++l) {
             const TrueLesion& lesion = each->truth[l];
@@ -148,10 +152,9 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
     }
     const double scans = std::max(1, sum.cases);
     sum.falsePositives /= scans, sum.falseBefore /= scans;
-    const auto mean = [](const std::vector<double>& values) {
-        return values.empty()
-                   ? 0.0
-                   : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
+    const auto mean = [](const std::vector<double>& values) -> std::optional<double> {
+        if (values.empty()) return std::nullopt;
+        return std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
     };
     sum.diameterMean = mean(errors);
     sum.submergedDiameterMean = mean(submerged), sum.pedunculatedDiameterMean = mean(pedunculated);
@@ -166,16 +169,16 @@ Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double opera
 
 namespace {
 
-void sortFrom(std::vector<Mistake>& mistakes, std::size_t first) {
-    std::stable_sort(mistakes.begin() + std::ptrdiff_t(first), mistakes.end(),
-                     [](const Mistake& a, const Mistake& b) { return a.score > b.score; });
+void sortFrom(std::vector<JudgedPlace>& places, std::size_t first) {
+    std::stable_sort(places.begin() + std::ptrdiff_t(first), places.end(),
+                     [](const JudgedPlace& a, const JudgedPlace& b) { return a.score > b.score; });
 }
 
 }  // namespace
 
-std::vector<Mistake> missedLesions(const std::vector<const EvaluatedCase*>& cases,
-                                   double operatingPoint) {
-    std::vector<Mistake> missed;
+std::vector<JudgedPlace> missedLesions(const std::vector<const EvaluatedCase*>& cases,
+                                       double operatingPoint) {
+    std::vector<JudgedPlace> missed;
     for (const EvaluatedCase* each : cases) {
         const std::size_t first = missed.size();
         const std::vector<double> best = bestScores(*each);
@@ -191,18 +194,34 @@ std::vector<Mistake> missedLesions(const std::vector<const EvaluatedCase*>& case
     return missed;
 }
 
-std::vector<Mistake> falseFindings(const std::vector<const EvaluatedCase*>& cases,
-                                   double operatingPoint) {
-    std::vector<Mistake> wrong;
+namespace {
+
+using IsMeant = bool (*)(const EvaluatedCase& each, const ToldPlace& place);
+
+std::vector<JudgedPlace> told(const std::vector<const EvaluatedCase*>& cases, double operatingPoint,
+                              IsMeant isMeant) {
+    std::vector<JudgedPlace> found;
     for (const EvaluatedCase* each : cases) {
-        const std::size_t first = wrong.size();
+        const std::size_t first = found.size();
         for (const ToldPlace& place : each->places)
-            if (place.score >= operatingPoint && blamed(*each, place))
-                wrong.push_back({each->name, place.centerMm, place.diameterMm,
-                                 falseKind(*each, place), place.score});
-        sortFrom(wrong, first);
+            if (place.score >= operatingPoint && isMeant(*each, place))
+                found.push_back({each->name, place.centerMm, place.diameterMm, kindOf(*each, place),
+                                 place.score});
+        sortFrom(found, first);
     }
-    return wrong;
+    return found;
+}
+
+}  // namespace
+
+std::vector<JudgedPlace> falseFindings(const std::vector<const EvaluatedCase*>& cases,
+                                       double operatingPoint) {
+    return told(cases, operatingPoint, blamed);
+}
+
+std::vector<JudgedPlace> hyperplasticFindings(const std::vector<const EvaluatedCase*>& cases,
+                                              double operatingPoint) {
+    return told(cases, operatingPoint, isHyperplastic);
 }
 
 std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases, int resamples) {

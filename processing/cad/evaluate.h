@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,16 +46,17 @@ struct Evaluation {
     double falsePositives = 0.0;          ///< a scan; hyperplastic growths are none
     double falseBefore = 0.0;             ///< a scan: the same with no candidate rejected
     std::map<std::string, int> falseKinds;
-    int hyperplastic = 0;  ///< findings that are small benign growths
-    /// Absolute error of diameters of what was found, mm: mean, 95 %, and the mean error.
-    double diameterMean = 0.0, diameter95 = 0.0, diameterBias = 0.0;
-    double submergedDiameterMean = 0.0, pedunculatedDiameterMean = 0.0;
+    int hyperplastic = 0;  ///< findings that are small benign growths: neither right nor false
+    /// Absolute error of diameters of what was found, mm: mean, 95 %, and the mean error. Empty
+    /// where nothing was.
+    std::optional<double> diameterMean, diameter95, diameterBias;
+    std::optional<double> submergedDiameterMean, pedunculatedDiameterMean;
 };
 Evaluation evaluate(const std::vector<const EvaluatedCase*>& cases, double operatingPoint);
 
-/// What an operating point gets wrong, to be looked at; by case, and of each the most probable
+/// What is not right at an operating point, to be looked at; by case, and of each the most probable
 /// first.
-struct Mistake {
+struct JudgedPlace {
     std::string caseName;
     glm::dvec3 positionMm{0.0};
     double diameterMm = 0.0;
@@ -62,11 +64,14 @@ struct Mistake {
     double score = 0.0;  ///< the best that means the lesion; 0 too where no candidate does
 };
 /// Neoplastic lesions from 5 mm that are not told.
-std::vector<Mistake> missedLesions(const std::vector<const EvaluatedCase*>& cases,
-                                   double operatingPoint);
+std::vector<JudgedPlace> missedLesions(const std::vector<const EvaluatedCase*>& cases,
+                                       double operatingPoint);
 /// What is told and counts as false.
-std::vector<Mistake> falseFindings(const std::vector<const EvaluatedCase*>& cases,
-                                   double operatingPoint);
+std::vector<JudgedPlace> falseFindings(const std::vector<const EvaluatedCase*>& cases,
+                                       double operatingPoint);
+/// What is told and is hyperplastic, which counts as neither.
+std::vector<JudgedPlace> hyperplasticFindings(const std::vector<const EvaluatedCase*>& cases,
+                                              double operatingPoint);
 
 /// Whether the free-response ROC curve asks for it: neoplastic, from 6 mm.
 bool countsInCurve(const TrueLesion& lesion);

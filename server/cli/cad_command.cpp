@@ -561,7 +561,8 @@ constexpr const char* columnsHelp =
     "without tagging). FP: false findings a scan, before: those before they were weighed, reduced: "
     "the share that weighing took away. |d|: mean error of the diameter of what was found, in mm, "
     "95 %: what 95 % of the errors do not exceed. Below each group: found of all by the truth's "
-    "kinds, and what the false ones lie on.";
+    "kinds, what the false ones lie on, and those that are small benign growths, which count as "
+    "neither.";
 
 // What a group of phantoms is called: a case's name up to its first hyphen.
 std::string groupOf(const std::string& name) {
@@ -570,6 +571,11 @@ std::string groupOf(const std::string& name) {
 
 nlohmann::ordered_json jsonOf(const cad::Share& share) {
     return {{"hit", share.hit}, {"of", share.of}};
+}
+
+// null where there is none.
+nlohmann::ordered_json jsonOf(const std::optional<double>& number) {
+    return number ? nlohmann::ordered_json(*number) : nlohmann::ordered_json();
 }
 
 nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
@@ -593,16 +599,16 @@ nlohmann::ordered_json jsonOf(const cad::Evaluation& sum) {
             {"before_reduction_per_scan", sum.falseBefore},
             {"false_positives_by_kind", kinds},
             {"hyperplastic", sum.hyperplastic},
-            {"diameter_error_mean_mm", sum.diameterMean},
-            {"diameter_error_95_mm", sum.diameter95},
-            {"diameter_bias_mm", sum.diameterBias},
-            {"diameter_error_submerged_mm", sum.submergedDiameterMean},
-            {"diameter_error_pedunculated_mm", sum.pedunculatedDiameterMean}};
+            {"diameter_error_mean_mm", jsonOf(sum.diameterMean)},
+            {"diameter_error_95_mm", jsonOf(sum.diameter95)},
+            {"diameter_bias_mm", jsonOf(sum.diameterBias)},
+            {"diameter_error_submerged_mm", jsonOf(sum.submergedDiameterMean)},
+            {"diameter_error_pedunculated_mm", jsonOf(sum.pedunculatedDiameterMean)}};
 }
 
-nlohmann::ordered_json jsonOf(const std::vector<cad::Mistake>& mistakes) {
+nlohmann::ordered_json jsonOf(const std::vector<cad::JudgedPlace>& places) {
     auto list = nlohmann::ordered_json::array();
-    for (const cad::Mistake& each : mistakes)
+    for (const cad::JudgedPlace& each : places)
         list.push_back({{"case", each.caseName},
                         {"position_mm", {each.positionMm.x, each.positionMm.y, each.positionMm.z}},
                         {"diameter_mm", each.diameterMm},
@@ -613,20 +619,24 @@ nlohmann::ordered_json jsonOf(const std::vector<cad::Mistake>& mistakes) {
 
 void print(const std::string& group, const cad::Evaluation& sum) {
     const auto of = [](const cad::Share& s) { return fmt::format("{}/{}", s.hit, s.of); };
+    const auto mm = [](const std::optional<double>& length) {
+        return length ? fmt::format("{:.2f}", *length) : std::string("-");
+    };
     fmt::print(
         "{:<10} {:>4} {:>9} {:>8} {:>8} {:>9} {:>9} {:>9} {:>7} {:>6} {:>7.2f} {:>7.1f} "
-        "{:>6.1f}% {:>6.2f} {:>6.2f}\n",
+        "{:>6.1f}% {:>6} {:>6}\n",
         group, sum.cases, of(sum.from6Mm), of(sum.from5To6Mm), of(sum.from10Mm), of(sum.plain),
         of(sum.dense), of(sum.submerged), of(sum.coated), of(sum.hidden), sum.falsePositives,
         sum.falseBefore,
         sum.falseBefore > 0.0 ? 100.0 * (1.0 - sum.falsePositives / sum.falseBefore) : 0.0,
-        sum.diameterMean, sum.diameter95);
+        mm(sum.diameterMean), mm(sum.diameter95));
     std::string kinds;
     for (const auto& [kind, share] : sum.byKind)
         kinds += fmt::format("  {} {}", kind, of(share));
     if (!sum.falseKinds.empty()) kinds += "; false:";
     for (const auto& [kind, count] : sum.falseKinds)
         kinds += fmt::format(" {} {}", kind, count);
+    if (sum.hyperplastic > 0) kinds += fmt::format("; neither: hyperplastic {}", sum.hyperplastic);
     fmt::print("          {}\n", kinds);
 }
 
@@ -695,6 +705,7 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     report["all"] = jsonOf(sum);
     report["missed"] = jsonOf(cad::missedLesions(every, point));
     report["false_findings"] = jsonOf(cad::falseFindings(every, point));
+    report["hyperplastic_findings"] = jsonOf(cad::hyperplasticFindings(every, point));
     const auto curve = cad::frocCurve(every);
     if (curve.empty())
         fmt::print("No polyp from 6 mm is in these cases: nothing was found or missed.\n");
@@ -833,7 +844,8 @@ Command addCad(CLI::App& program) {
     evaluate
         ->add_option(
             "--report", forEvaluate->report,
-            "Write all figures, and where each polyp that is missed and each false finding lies")
+            "Write all figures, and where each polyp that is missed, each false finding and each "
+            "that counts as neither lies")
         ->type_name("FILE.json");
     evaluate
         ->add_option("--froc", forEvaluate->froc,

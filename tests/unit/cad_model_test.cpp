@@ -609,11 +609,15 @@ TEST(Evaluation, CountsWhatItSays) {
     EXPECT_EQ(sum.hyperplastic, 1);
     EXPECT_EQ(sum.falseKinds.at("fold"), 1);
     EXPECT_EQ(sum.falseKinds.at("lump"), 1);
-    EXPECT_DOUBLE_EQ(sum.diameterMean, 0.5);
-    EXPECT_DOUBLE_EQ(sum.diameter95, 0.5);
+    EXPECT_DOUBLE_EQ(sum.diameterMean.value(), 0.5);
+    EXPECT_DOUBLE_EQ(sum.diameter95.value(), 0.5);
     const cad::Evaluation both = cad::evaluate({&a}, 0.2);
     EXPECT_GE(both.diameter95, both.diameterMean);
     EXPECT_EQ(cad::evaluate({&a}, 0.2).from6Mm.hit, 2);
+    // Of what was not found no error is told.
+    const cad::Evaluation nothing = cad::evaluate({&a}, 0.95);
+    for (const auto& error : {nothing.diameterMean, nothing.diameter95, nothing.diameterBias})
+        EXPECT_FALSE(error);
 }
 
 TEST(Evaluation, SaysWhereItsMistakesLie) {
@@ -642,6 +646,10 @@ TEST(Evaluation, SaysWhereItsMistakesLie) {
     EXPECT_EQ(wrong[0].kind, "fold") << "the most probable first";
     EXPECT_EQ(wrong[0].positionMm, glm::dvec3(2, 0, 0));
     EXPECT_EQ(wrong[1].kind, "lump");
+    const auto benign = cad::hyperplasticFindings({&a, &b}, 0.5);
+    ASSERT_EQ(benign.size(), 1u);
+    EXPECT_EQ(benign[0].positionMm, glm::dvec3(3, 0, 0));
+    EXPECT_TRUE(cad::hyperplasticFindings({&a, &b}, 0.75).empty()) << "it is not told there";
 }
 
 TEST(Evaluation, CountsWhatResidueCoatsApartFromWhatIsUnderFluid) {
