@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -84,6 +85,7 @@ public:
     Result<void> addFrame(const Panel& panel, const PictureFrame& frame);
     Result<void> addBar(const Panel& panel, double mmPerPixel);
     Result<void> addLegend(const Panel& panel);
+    Result<void> addPlace(const Panel& panel, const NumberedPlace& place);
 
 private:
     Result<Box> boxOf(const pictures::Marks::Words& words) const {
@@ -170,6 +172,30 @@ Result<void> Layout::addLegend(const Panel& panel) {
     return {};
 }
 
+/// A ring, and the number on the first of its sides that is free.
+Result<void> Layout::addPlace(const Panel& panel, const NumberedPlace& place) {
+    const glm::dvec2 at = place.pixel + glm::dvec2(panel.left, 0.0);
+    const glm::dvec2 inPanel = place.pixel / glm::dvec2(panel.size);
+    if (!glm::all(glm::greaterThanEqual(inPanel, glm::dvec2(0.0))) ||
+        !glm::all(glm::lessThan(inPanel, glm::dvec2(1.0))))
+        return {};
+    const double radius = 0.6 * height() + 2.0;
+    constexpr int corners = 12;
+    const auto corner = [&](int n) {
+        const double angle = 2.0 * std::numbers::pi * n / corners;
+        return glm::ivec2(glm::round(at + radius * glm::dvec2(std::cos(angle), std::sin(angle))));
+    };
+    for (int n = 0; n < corners; ++n)
+        marks_.lines.push_back({corner(n), corner(n + 1)});
+    for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0}, {0, -1}, {0, 1}}) {
+        const pictures::Marks::Words words{std::to_string(place.number),
+                                           glm::ivec2(glm::round(at + (radius + 3.0) * side)),
+                                           0.5 - 0.5 * side};
+        if (isFree(panel, TRY(boxOf(words)))) return addAlways(words);
+    }
+    return {};
+}
+
 /// Of each camera that sees any of the wall: its arc length, mm, and its row of a picture of the
 /// strip `rows` high: the middle of what it sees.
 std::vector<glm::dvec2> camerasOnStrip(const FlatMap& map, int rows) {
@@ -216,7 +242,7 @@ std::string orientation(glm::dvec3 direction) {
 }
 
 Result<pictures::Marks> caption(const std::string& line, const std::optional<PictureFrame>& frame,
-                                glm::ivec2 size) {
+                                glm::ivec2 size, const std::vector<NumberedPlace>& places) {
     Layout layout(textHeight(size));
     const Panel whole{0, size};
     if (frame) {
@@ -224,6 +250,8 @@ Result<pictures::Marks> caption(const std::string& line, const std::optional<Pic
         TRY(layout.addBar(whole, frame->mmPerPixel));
     }
     TRY(layout.addText(whole, line));
+    for (const NumberedPlace& place : places)
+        TRY(layout.addPlace(whole, place));
     return std::move(layout).marks();
 }
 
@@ -243,11 +271,14 @@ Result<pictures::Marks> comparisonCaption(const std::string& line, const Picture
     return std::move(layout).marks();
 }
 
-Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size) {
+Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size,
+                                     const std::vector<NumberedPlace>& findings) {
     Layout layout(std::clamp(size.x / 40.0, 6.0, 24.0));
     const int gap = layout.gap();
     TRY(layout.addAlways({"cecum", {size.x / 2, gap}, {0.5, 0.0}}));
     TRY(layout.addAlways({"rectum", {size.x / 2, size.y - gap}, {0.5, 1.0}}));
+    for (const NumberedPlace& finding : findings)
+        TRY(layout.addPlace({0, size}, finding));
 
     const auto places = camerasOnStrip(map, size.y);
     if (places.size() < 2) return std::move(layout).marks();

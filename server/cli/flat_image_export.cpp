@@ -8,6 +8,8 @@
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/wall_paint.h"
+#include "core/flat_lookup.h"
+#include "core/strip_layout.h"
 #include "gpu/context.h"
 #include "render/strip_picture.h"
 #include "store/products.h"
@@ -97,14 +99,24 @@ Result<void> exportFlatImage(const store::Case& source, const fs::path& file,
                              {"seam_margin", fmt::format("{}", options.seamMargin)},
                              {"raycaster", toString(render::RendererOptions{}.raycaster)},
                              {"transfer_function", options.transferFunction}});
-    pictures::Marks marks;
-    if (options.caption) marks = TRY(stripCaption(map, size));
     auto prepared = TRY(render::prepareCase(scans.ct, scans.cleansed, options.threads));
     prepared.flatMap = std::make_shared<const FlatMap>(std::move(map));
-    auto paint =
-        TRY(options.findings ? paintFindings(source, prepared.flatMap, options.leastProbability)
-                             : paintBridges(source, prepared.flatMap, nullptr));
-    picture.paint = std::move(paint);
+    PaintedFindings painted;
+    if (options.findings)
+        painted = TRY(paintFindings(source, prepared.flatMap, options.leastProbability));
+    else
+        painted.paint = TRY(paintBridges(source, prepared.flatMap, nullptr));
+    picture.paint = painted.paint;
+    pictures::Marks marks;
+    if (options.caption) {
+        const FlatWindow whole{{0.5, 0.5 * size.y / options.width}, double(options.width)};
+        const FlatLookup lookup(prepared.flatMap);
+        std::vector<NumberedPlace> places;
+        for (const PaintedFindings::Place& finding : painted.places)
+            places.push_back(
+                {finding.number, whole.pixelFromFlat(lookup.nearest(finding.wallMm).flat, size)});
+        marks = TRY(stripCaption(*prepared.flatMap, size, places));
+    }
     auto context = TRY(gpu::Context::create());
     auto renderer = TRY(
         render::CaseRenderer::upload(*context, std::move(prepared), {.threads = options.threads}));

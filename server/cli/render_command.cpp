@@ -13,6 +13,7 @@
 #include "core/flat_lookup.h"
 #include "core/orbit.h"
 #include "core/slice_placement.h"
+#include "core/strip_layout.h"
 #include "core/wall_camera.h"
 #include "gpu/context.h"
 #include "nifti/nifti_file.h"
@@ -47,6 +48,7 @@ using pictures::Provenance;
 struct Notes {
     Provenance provenance;
     std::optional<PictureFrame> frame;
+    std::vector<NumberedPlace> findings = {};  ///< where a picture of the whole colon shows them
 };
 
 /// What the case has, as far as the picture needs it.
@@ -54,6 +56,7 @@ struct Products {
     Centerline centerline;
     std::shared_ptr<const FlatMap> flatMap;
     std::shared_ptr<const render::WallPaint> paint;  ///< --paint, with the bridges hatched
+    std::vector<PaintedFindings::Place> findings;    ///< of --paint findings
     std::shared_ptr<const TriMesh> wall;
     CaseScans scans;
     Volume<TissueFractions> mixture;
@@ -164,10 +167,16 @@ Result<Image> drawFlattened(const RenderArguments& arguments, const Products& pr
                             render::CaseRenderer& renderer, Notes& notes) {
     auto optics = TRY(opticsOf(arguments, "mucosa"));
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
-    if (arguments.shown() == View::flattened)
+    if (arguments.shown() == View::flattened) {
+        const StripLayout layout = layOutStrip(products.flatMap->height, arguments.size);
+        const FlatLookup lookup(products.flatMap);
+        for (const PaintedFindings::Place& finding : products.findings)
+            notes.findings.push_back(
+                {finding.number, layout.pixelFromFlat(lookup.nearest(finding.wallMm).flat)});
         return renderer.render(
             render::FlatOverview{std::move(optics), marchOf(arguments), products.paint}, width,
             height);
+    }
     const auto center =
         TRY(wallPlace(arguments, products.centerline, FlatLookup(products.flatMap)));
     const FlatWindow window{center.flat, arguments.pixelsPerCircumference};
@@ -194,6 +203,9 @@ Result<Image> drawOverview(const RenderArguments& arguments, const Products& pro
     render::OverviewView view;
     view.camera = cameraOf(orbit);
     addCamera(notes, view.camera, arguments.size.y);
+    for (const PaintedFindings::Place& finding : products.findings)
+        notes.findings.push_back(
+            {finding.number, projected(view.camera, finding.wallMm, arguments.size)});
     view.bookmarksMm = arguments.marksMm;
     view.paint = products.paint;
     view.body = arguments.body;
@@ -315,11 +327,13 @@ Result<Products> readProducts(const RenderArguments& arguments, const store::Cas
     if (arguments.isFlattened() || onWall || !arguments.paint.empty() || bridged) {
         TRY(keep(source.readFlatMap(), products.flatMap));
     }
-    if (arguments.paintsFindings())
-        TRY(keep(paintFindings(source, products.flatMap, arguments.leastProbability),
-                 products.paint));
-    else if (!arguments.paint.empty())
+    if (arguments.paintsFindings()) {
+        auto painted = TRY(paintFindings(source, products.flatMap, arguments.leastProbability));
+        products.paint = std::move(painted.paint);
+        products.findings = std::move(painted.places);
+    } else if (!arguments.paint.empty()) {
         TRY(keep(readWallPaint(arguments.paint, products.flatMap->height), products.paint));
+    }
     if (bridged && !arguments.paintsFindings())
         TRY(keep(paintBridges(source, products.flatMap, products.paint), products.paint));
     if (view == View::overview ||
@@ -470,7 +484,7 @@ Result<pictures::Marks> captionOf(const RenderArguments& arguments, const Notes&
          {fact("view"), arguments.arcMm ? fmt::format("{:g} mm", *arguments.arcMm) : std::string()})
         if (!word.empty()) line += (line.empty() ? "" : "  ") + word;
     return arguments.compare ? comparisonCaption(line, *notes.frame, arguments.size)
-                             : caption(line, notes.frame, arguments.size);
+                             : caption(line, notes.frame, arguments.size, notes.findings);
 }
 
 Result<void> runRender(const RenderArguments& arguments) {

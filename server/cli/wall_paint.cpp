@@ -53,9 +53,8 @@ Result<bool> hasBridges(const store::Case& source) {
         });
 }
 
-Result<std::shared_ptr<const render::WallPaint>> paintFindings(
-    const store::Case& source, std::shared_ptr<const FlatMap> map,
-    std::optional<double> leastProbability) {
+Result<PaintedFindings> paintFindings(const store::Case& source, std::shared_ptr<const FlatMap> map,
+                                      std::optional<double> leastProbability) {
     if (!source.find(store::product::findings))
         return fail(ErrorKind::noResult,
                     "the case has no findings: prepare looks for polyps in a colon", source.name());
@@ -74,14 +73,22 @@ Result<std::shared_ptr<const render::WallPaint>> paintFindings(
     }
     auto sight = TRY(render::WallSight::of(std::move(map), std::move(bridged)));
     const auto painter = TRY(render::StripPainter::of(std::move(sight)));
-    std::vector<render::FindingShade> shades(findings.findings.size(),
-                                             render::FindingShade::finding);
+    PaintedFindings painted;
+    std::vector<render::FindingShade> shades;
+    const auto add = [&](const Finding& finding, render::FindingShade shade) {
+        shades.push_back(shade);
+        if (shade != render::FindingShade::none)
+            painted.places.push_back({int(shades.size()), finding.wallMm});
+    };
+    for (const Finding& finding : findings.findings)
+        add(finding, render::FindingShade::finding);
     for (const Finding& candidate : findings.candidates)
-        shades.push_back(leastProbability && candidate.score >= *leastProbability
-                             ? render::FindingShade::candidate
-                             : render::FindingShade::none);
-    return painter->paint({}, {},
-                          render::colorFindings(render::findingPixels(*painter, findings), shades));
+        add(candidate, leastProbability && candidate.score >= *leastProbability
+                           ? render::FindingShade::candidate
+                           : render::FindingShade::none);
+    painted.paint = painter->paint(
+        {}, {}, render::colorFindings(render::findingPixels(*painter, findings), shades));
+    return painted;
 }
 
 Result<std::shared_ptr<const render::WallPaint>> paintBridges(

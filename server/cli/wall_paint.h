@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace haustra::cli {
 
@@ -20,12 +21,21 @@ Result<std::shared_ptr<const render::WallPaint>> readWallPaint(const std::filesy
 /// Whether the case's lumen has a bridge, on its path or off it. False where it has no lumen.
 Result<bool> hasBridges(const store::Case& source);
 
+/// A case's findings on its wall.
+struct PaintedFindings {
+    struct Place {
+        int number = 0;  ///< in the case, from 1, as a reading station tells it
+        glm::dvec3 wallMm{0.0};
+    };
+    std::shared_ptr<const render::WallPaint> paint;
+    std::vector<Place> places;  ///< of those that are painted
+};
+
 /// The case's findings, coloured as the server does, and its hatched bridges; with
 /// `leastProbability` its candidates from that on, too. Fails where the case has no findings, or
 /// they are not of its scan.
-Result<std::shared_ptr<const render::WallPaint>> paintFindings(
-    const store::Case& source, std::shared_ptr<const FlatMap> map,
-    std::optional<double> leastProbability);
+Result<PaintedFindings> paintFindings(const store::Case& source, std::shared_ptr<const FlatMap> map,
+                                      std::optional<double> leastProbability);
 
 /// The hatched bridges of the case's flat map over `below`, which may be missing; `below` itself
 /// where there is none. Fails where the case has no sound lumen.

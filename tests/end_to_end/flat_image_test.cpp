@@ -1,4 +1,5 @@
 // haustra render and export of the flattened wall, on a tube whose map is known.
+#include "core/findings.h"
 #include "core/wall_camera.h"
 #include "end_to_end/flat_store.h"
 #include "end_to_end/run_program.h"
@@ -153,6 +154,69 @@ TEST_F(FlatImage, ACaptionIsDrawnOntoTheSamePicture) {
     const std::size_t changed = differingBytes(plain, marked);
     EXPECT_GT(changed, 300u);
     EXPECT_LT(changed, plain.rgb.size() / 10);
+}
+
+// In the whole strip, as an export and as a view.
+TEST_F(FlatImage, ACaptionRingsAFindingWhereItIsPainted) {
+    const auto store = store::CaseStore::open(folder_->path() / "store", false).value();
+    const auto plain = store.openCase(smallCaseName).value();
+    const auto ct = plain.readVolume<std::int16_t>("ct").value();
+    Findings findings;
+    findings.model.software = "haustra 0";
+    findings.grid = ct.grid();
+    Finding finding;
+    finding.positionMm = finding.wallMm = tube_.positionMm({0.2, 0.3 * tube_.height()});
+    finding.diameterMm = 8.0;
+    for (std::size_t n = 0; n < ct.grid().voxelCount(); ++n) {
+        const glm::ivec3 voxel = ct.grid().voxelAt(n);
+        if (glm::distance(ct.grid().patientFromVoxelPoint(voxel), finding.positionMm) < 4.0)
+            finding.voxels.push_back({voxel, 1});
+    }
+    findings.findings = {finding};
+    auto found = store.createCase("found").value();
+    const auto key = [](const char* stage) { return store::makeKey(stage, 1, "", {}); };
+    ASSERT_TRUE(found.publishVolume("ct", key("ct"), ct));
+    ASSERT_TRUE(found.publishCenterline("centerline", key("centerline"), tube_.centerline()));
+    ASSERT_TRUE(found.publishFlatMap("flatmap", key("flatmap"), tube_.map()));
+    ASSERT_TRUE(found.publishText("findings", key("findings"), findingsJson(findings)));
+
+    const std::vector<std::vector<std::string>> ways{
+        {"export", "found", "flat-image", picture(), "--width", "200", "--seam-margin", "0.1"},
+        {"render", "found", "--view", "flattened", "--size", "200x300", "--out", picture()}};
+    for (const std::vector<std::string>& way : ways) {
+        const auto drawn = [&](std::vector<std::string> more) {
+            more.insert(more.begin(), way.begin(), way.end());
+            const Outcome outcome = run(more);
+            EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+            return readPicture(picture());
+        };
+        const std::vector<std::string> paint =
+            way.front() == "export" ? std::vector<std::string>{"--findings"}
+                                    : std::vector<std::string>{"--paint", "findings"};
+        std::vector<std::string> both = paint;
+        both.push_back("--caption");
+        const Image bare = drawn({}), painted = drawn(paint), words = drawn({"--caption"}),
+                    marked = drawn(both);
+        // The middle of where two pictures differ.
+        const auto middle = [&](const auto& differ) {
+            glm::dvec2 sum(0.0);
+            int pixels = 0;
+            for (int y = 0; y < bare.height; ++y)
+                for (int x = 0; x < bare.width; ++x)
+                    if (differ(part(bare, {x, y}, {1, 1}), part(painted, {x, y}, {1, 1}),
+                               part(words, {x, y}, {1, 1}), part(marked, {x, y}, {1, 1})))
+                        sum += glm::dvec2(x, y), ++pixels;
+            EXPECT_GT(pixels, 20) << way.front();
+            return sum / double(std::max(1, pixels));
+        };
+        const glm::dvec2 where = middle([](const auto&a, const auto&b, const auto&, const auto&) {
+            return a != b;
+        }),
+                         ring = middle([](const auto&, const auto&b, const auto&c, const auto&d) {
+                             return d != b && d != c;
+                         });
+        EXPECT_LT(glm::distance(where, ring), 15.0) << way.front();
+    }
 }
 
 // JPEG's sides end where no other format's do.

@@ -260,16 +260,17 @@ TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) 
     const auto few = cli::paintFindings(made, map, {}), still = cli::paintFindings(made, map, 0.31),
                all = cli::paintFindings(made, map, 0.3);
     ASSERT_TRUE(few && still && all);
-    EXPECT_EQ((*few)->pixels, (*still)->pixels);
+    EXPECT_EQ(few->paint->pixels, still->paint->pixels);
     const auto painter = StripPainter::of(WallSight::of(map).value()).value();
     std::map<std::int32_t, int> of;
     for (const FindingPixel& pixel : findingPixels(*painter, findings))
         of[pixel.pixel] = pixel.finding;
     int both[2] = {0, 0};
-    for (std::int32_t n = 0; n < std::int32_t((*all)->pixels.size()); ++n) {
+    for (std::int32_t n = 0; n < std::int32_t(all->paint->pixels.size()); ++n) {
         const auto found = of.find(n);
-        ASSERT_EQ((*few)->pixels[std::size_t(n)].a > 0, found != of.end() && found->second == 0);
-        ASSERT_EQ((*all)->pixels[std::size_t(n)].a > 0, found != of.end());
+        ASSERT_EQ(few->paint->pixels[std::size_t(n)].a > 0,
+                  found != of.end() && found->second == 0);
+        ASSERT_EQ(all->paint->pixels[std::size_t(n)].a > 0, found != of.end());
         if (found != of.end()) ++both[found->second];
     }
     EXPECT_GT(both[0], 100);

@@ -100,6 +100,34 @@ TEST(Caption, ALineThatIsTooLongKeepsItsBeginningAndItsEnd) {
     EXPECT_GT(boxOf(marks, marks.words.front()).high.x, 150.0);  // no shorter than need be
 }
 
+// Of findings that lie side by side numbers have no room; rings say all the same where they are.
+TEST(Caption, RingsAFindingAndNumbersItWhereItCanBeRead) {
+    const glm::ivec2 size(400, 300);
+    std::vector<NumberedPlace> places{{1, {100.0, 80.0}}, {2, {398.0, 100.0}}, {3, {500.0, 10.0}}};
+    for (int n = 0; n < 12; ++n)
+        places.push_back({10 + n, {200.0 + 3 * (n % 4), 150.0 + 3 * (n / 4)}});
+    const pictures::Marks bare = caption("p", PictureFrame{}, size).value(),
+                          marks = caption("p", PictureFrame{}, size, places).value();
+    expectReadable(marks, size, "");
+    EXPECT_EQ(count(marks, "1"), 1);
+    EXPECT_EQ(count(marks, "2"), 1) << "to the left of its ring, at the picture's edge";
+    EXPECT_EQ(count(marks, "3"), 0) << "it is not in the picture";
+    EXPECT_LT(marks.words.size(), bare.words.size() + places.size() - 1);
+    // Each ring closes around its place.
+    std::vector<pictures::Marks::Line> rings(
+        marks.lines.begin() + std::ptrdiff_t(bare.lines.size()), marks.lines.end());
+    ASSERT_EQ(rings.size() % (places.size() - 1), 0u);
+    const std::size_t corners = rings.size() / (places.size() - 1);
+    for (std::size_t n = 0; n < rings.size(); n += corners) {
+        const std::size_t drawn = n / corners;
+        const glm::dvec2 at = places[drawn < 2 ? drawn : drawn + 1].pixel;
+        EXPECT_EQ(rings[n].from, rings[n + corners - 1].to);
+        const double radius = glm::distance(glm::dvec2(rings[n].from), at);
+        for (std::size_t corner = n; corner < n + corners; ++corner)
+            EXPECT_NEAR(glm::distance(glm::dvec2(rings[corner].to), at), radius, 1.5);
+    }
+}
+
 TEST(Caption, LettersSayWhereDirectionsPoint) {
     EXPECT_EQ(orientation({1, 0, 0}), "L");
     EXPECT_EQ(orientation({-1, 0, 0}), "R");
