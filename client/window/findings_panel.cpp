@@ -22,12 +22,14 @@
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <QWheelEvent>
+#include <algorithm>
 #include <cmath>
 
 namespace haustra::window {
 namespace {
 
 constexpr int numberRole = Qt::UserRole;
+constexpr int leastRows = 4;  // of the list in sight
 constexpr auto modeSetting = "reading/detection";
 constexpr DetectionMode modes[] = {DetectionMode::off, DetectionMode::secondReader,
                                    DetectionMode::concurrent};
@@ -210,18 +212,18 @@ FindingsPanel::FindingsPanel(Reading& reading)
     list_->header()->setStretchLastSection(false);
     state_->setWordWrap(true);
     state_->setTextFormat(Qt::PlainText);
-    // However much there is to say of them, the list stays in sight.
+    // However much there is to say of them, the list stays in sight; what it leaves is theirs.
     constexpr int noteLines = 3;
     notes_->setReadOnly(true);
     notes_->setTabChangesFocus(true);
     notes_->setFont(smallFont(font()));
     notes_->setAccessibleName(tr("What must be known of the findings"));
-    notes_->setFixedHeight(noteLines * QFontMetrics(notes_->font()).lineSpacing() +
-                           2 * int(notes_->document()->documentMargin() + notes_->frameWidth()));
-    // It takes what is left; some findings are in sight, however low the panel is.
+    notes_->setMinimumHeight(noteLines * QFontMetrics(notes_->font()).lineSpacing() +
+                             2 * int(notes_->document()->documentMargin() + notes_->frameWidth()));
+    notes_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
+    // It takes what it needs of the height; some findings are in sight, however low the panel is.
     list_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Ignored);
-    constexpr int leastRows = 5;
-    list_->setMinimumHeight(leastRows * (QFontMetrics(list_->font()).height() + 6));
+    list_->setMinimumHeight(heightOfRows(leastRows));
     auto* row = new QHBoxLayout;
     row->addWidget(candidates_);
     row->addWidget(least_);
@@ -245,8 +247,8 @@ FindingsPanel::FindingsPanel(Reading& reading)
     column->addWidget(firstPass_);
     column->addLayout(row);
     column->addLayout(said);
-    column->addWidget(list_, 1);
-    column->addWidget(notes_);
+    column->addWidget(list_, 2);
+    column->addWidget(notes_, 1);
     connect(mode_, &QComboBox::activated, this,
             [this](int n) { chooseDetection(reading_, modes[n]); });
     connect(firstPass_, &QPushButton::clicked, this, [this] { finishFirstPass(reading_); });
@@ -332,11 +334,19 @@ void FindingsPanel::fill() {
             item->setForeground(column, theme().muted);
         }
     }
+    list_->setMaximumHeight(heightOfRows(std::max(leastRows, list_->topLevelItemCount())));
     shownCurrent_ = 0;
     state_->setText(stateText());
     const QString notes = notesText();
     if (notes_->toPlainText() != notes) notes_->setPlainText(notes);
     notes_->setVisible(!notes.isEmpty());
+}
+
+int FindingsPanel::heightOfRows(int rows) const {
+    const int row = list_->topLevelItemCount() > 0
+                        ? list_->visualItemRect(list_->topLevelItem(0)).height()
+                        : QFontMetrics(list_->font()).height() + 6;
+    return list_->header()->sizeHint().height() + rows * row + 2 * list_->frameWidth();
 }
 
 void FindingsPanel::markCurrent() {

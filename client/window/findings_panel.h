@@ -29,6 +29,7 @@ private:
     void look();
     void choose(const DetectionChoice& choice);
     void fill();
+    int heightOfRows(int rows) const;
     void markCurrent();
     void goTo(int number);
     QString stateText() const;
