@@ -4,6 +4,7 @@
 #include "window/chosen_items.h"
 #include "window/pane.h"
 #include "window/theme.h"
+#include "window/told_sentences.h"
 
 #include <QApplication>
 #include <QCheckBox>
@@ -381,9 +382,10 @@ QString FindingsPanel::notesText() const {
     if (!list || list->model.empty()) return {};
     QStringList lines{tr("For a physician to judge.")};
     for (const std::string& warning : list->warnings)
-        lines += text(warning);
+        lines += translatedSentence(text(warning));
     lines += tr("Found by %1, which has learnt from: %2. Operating point %3.")
-                 .arg(text(list->model), text(list->trainedOn), percent(list->operatingPoint));
+                 .arg(text(list->model), translatedSentence(text(list->trainedOn)),
+                      percent(list->operatingPoint));
     return lines.join('\n');
 }
 

@@ -22,6 +22,7 @@
 #include "window/picture_out.h"
 #include "window/slice_panes.h"
 #include "window/theme.h"
+#include "window/told_sentences.h"
 
 #include <QAbstractButton>
 #include <QAbstractItemView>
@@ -696,8 +697,9 @@ void ReaderWindow::look() {
             QMenu* places = new QMenu(trust_);
             QStringList all;
             for (const std::string& warning : warnings) {
-                places->addAction(plainInMenu(text(warning)));
-                all += text(warning);
+                const QString sentence = translatedSentence(text(warning));
+                places->addAction(plainInMenu(sentence));
+                all += sentence;
             }
             // It may be open now.
             if (QMenu* former = trust_->menu()) former->deleteLater();

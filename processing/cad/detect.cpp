@@ -292,9 +292,11 @@ void warnOfResidue(const std::vector<Candidate>& residue, const CadModel& model,
     for (const double arcMm : arcs)
         places += printed(places.empty() ? "%.0f" : ", %.0f", arcMm);
     findings.warnings.push_back(printed(
-        "%zu place%s taken for tagged residue on the wall: %s mm from the rectum", arcs.size(),
-        arcs.size() == 1 ? " that looks like a polyp was" : "s that look like polyps were",
-        places.c_str()));
+        arcs.size() == 1 ? "%zu place that looks like a polyp was taken for tagged residue on the "
+                           "wall: %s mm from the rectum"
+                         : "%zu places that look like polyps were taken for tagged residue on the "
+                           "wall: %s mm from the rectum",
+        arcs.size(), places.c_str()));
 }
 
 }  // namespace

@@ -66,14 +66,16 @@ std::optional<std::string> unevenStepsOf(const Volume<std::int16_t>& hu, int thr
         told = printed("the slices at %.1f and %.1f mm differ %.1f times as much as those around",
                        heightMm(widest), heightMm(widest + 1), widestRatio);
         if (uneven > 1)
-            told += printed(", and %zu more %s by %.1f times and more", uneven - 1,
-                            uneven > 2 ? "pairs" : "pair", farMore);
+            told += printed(uneven > 2 ? ", and %zu more pairs by %.1f times and more"
+                                       : ", and %zu more pair by %.1f times and more",
+                            uneven - 1, farMore);
         told += ": the patient breathed or moved between them, or slices do not belong there";
     }
     if (same > 0)
-        told += printed("%s%zu %s the same as the one before, the first at %.1f mm",
-                        told.empty() ? "" : "; ", same, same > 1 ? "slices are" : "slice is",
-                        heightMm(firstSame + 1));
+        told += (told.empty() ? "" : "; ") +
+                printed(same > 1 ? "%zu slices are the same as the one before, the first at %.1f mm"
+                                 : "%zu slice is the same as the one before, the first at %.1f mm",
+                        same, heightMm(firstSame + 1));
     if (told.empty()) return std::nullopt;
     return told;
 }

@@ -1,6 +1,7 @@
 #include "segmentation/bowel_contents.h"
 
 #include "core/flood_fill.h"
+#include "core/printed_text.h"
 #include "core/voxel_sweep.h"
 
 #include <algorithm>
@@ -339,9 +340,9 @@ void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
     if (known && best != toldIndex) {
         if (areaMm2[best] > clearMm2 && areaMm2[best] > clearRatio * areaMm2[toldIndex]) {
             contents.warnings.push_back(
-                std::string("the air-fluid levels show that the patient lay ") +
-                lyingName(directions[best]) + ", not " + toString(position) +
-                " as the series says; the levels are believed");
+                printed("the air-fluid levels show that the patient lay %s, not %s as the series "
+                        "says; the levels are believed",
+                        lyingName(directions[best]), toString(position)));
         } else {
             best = toldIndex;
         }

@@ -682,6 +682,402 @@
     </message>
 </context>
 <context>
+    <name>ToldSentences</name>
+    <message>
+        <source>%1 mm2 of the wall were not examined: they enclose a bridge over a collapse, or were rebuilt after a leak</source>
+        <translation>%1 mm² der Wand wurden nicht untersucht: Sie umgeben eine Brücke über einem Kollaps oder wurden nach einem Leck neu gebildet</translation>
+    </message>
+    <message>
+        <source>%1 mm2 of the wall were not examined: they lie behind fluid without tagging or beside what stands in the lumen, where the wall&apos;s place is known to millimetres only</source>
+        <translation>%1 mm² der Wand wurden nicht untersucht: Sie liegen hinter unmarkierter Flüssigkeit oder neben etwas, das im Lumen steht; dort ist die Lage der Wand nur auf Millimeter bekannt</translation>
+    </message>
+    <message>
+        <source>the wall is %1 mm thick all around from %2 to %3 mm: it may be a cancer that leaves a channel, or a segment that is contracted</source>
+        <translation>Die Wand ist von %2 bis %3 mm ringsum %1 mm dick: Es kann ein Karzinom sein, das einen Kanal frei lässt, oder ein kontrahierter Abschnitt</translation>
+    </message>
+    <message>
+        <source>the wall is %1 mm thick all around from %2 to %3 mm: it may be a segment that is inflamed or contracted, or a long tumour</source>
+        <translation>Die Wand ist von %2 bis %3 mm ringsum %1 mm dick: Es kann ein entzündeter oder kontrahierter Abschnitt sein oder ein langer Tumor</translation>
+    </message>
+    <message>
+        <source>findings %1, from %2 mm on, lie rim to rim, %3 mm wide in all: they may be lobes of one mass</source>
+        <translation>Die Befunde %1, ab %2 mm, liegen Rand an Rand, zusammen %3 mm breit: Es können Lappen einer einzigen Raumforderung sein</translation>
+    </message>
+    <message>
+        <source>%1 place that looks like a polyp was taken for tagged residue on the wall: %2 mm from the rectum</source>
+        <translation>%1 Ort, der wie ein Polyp aussieht, wurde für markierten Rest auf der Wand gehalten: %2 mm ab dem Rektum</translation>
+    </message>
+    <message>
+        <source>%1 places that look like polyps were taken for tagged residue on the wall: %2 mm from the rectum</source>
+        <translation>%1 Orte, die wie Polypen aussehen, wurden für markierten Rest auf der Wand gehalten: %2 mm ab dem Rektum</translation>
+    </message>
+    <message>
+        <source>the tissue behind the wall is less even than where detection has learnt, %1 HU or more after smoothing to 1 mm: by noise, by contrast in its vessels, or by residue of weak tagging</source>
+        <translation>Das Gewebe hinter der Wand ist ungleichmäßiger als dort, wo die Erkennung gelernt hat, %1 HU oder mehr nach Glättung auf 1 mm: durch Rauschen, Kontrastmittel in seinen Gefäßen oder schwach markierte Reste</translation>
+    </message>
+    <message>
+        <source>more than %1 places may be polyps; the least probable are left out</source>
+        <translation>Mehr als %1 Orte können Polypen sein; die unwahrscheinlichsten sind weggelassen</translation>
+    </message>
+    <message>
+        <source>%1 places are told, more than a colon commonly has polyps: lumps of residue without tagging look alike, and most may be such</source>
+        <translation>%1 Orte sind genannt, mehr, als ein Kolon gewöhnlich Polypen hat: Klumpen unmarkierter Reste sehen ebenso aus, und die meisten können solche sein</translation>
+    </message>
+    <message>
+        <source>the colon was not flattened: the wall&apos;s texture was measured along other directions than detection has learnt from, and wall that is thick all around was not looked for</source>
+        <translation>Das Kolon wurde nicht abgewickelt: Die Textur der Wand wurde in anderen Richtungen gemessen, als die Erkennung gelernt hat, und nach ringsum dicker Wand wurde nicht gesucht</translation>
+    </message>
+    <message>
+        <source>the scan&apos;s kernel enhances edges, or the wall&apos;s surface is enhanced, as it is brighter behind gas than its tissue: detection has learnt from few like it, and may miss polyps of any size</source>
+        <translation>Der Faltungskern der Aufnahme verstärkt Kanten, oder die Oberfläche der Wand nimmt Kontrastmittel auf, denn sie ist hinter Gas heller als ihr Gewebe: Die Erkennung hat aus wenigen solchen gelernt und kann Polypen jeder Größe übersehen</translation>
+    </message>
+    <message>
+        <source>the scan&apos;s kernel enhances edges, or the wall&apos;s surface is enhanced, as it is brighter behind gas than its tissue: detection has learnt from few like it, and may miss polyps of any size, though it took off what it could</source>
+        <translation>Der Faltungskern der Aufnahme verstärkt Kanten, oder die Oberfläche der Wand nimmt Kontrastmittel auf, denn sie ist hinter Gas heller als ihr Gewebe: Die Erkennung hat aus wenigen solchen gelernt und kann Polypen jeder Größe übersehen, obwohl sie abgezogen hat, was sie konnte</translation>
+    </message>
+    <message>
+        <source>the scan&apos;s kernel enhances edges, or the wall&apos;s surface is enhanced, as it is brighter behind gas than its tissue: detection has learnt from few like it, and may miss polyps of any size, though what was added to edges was taken off before</source>
+        <translation>Der Faltungskern der Aufnahme verstärkt Kanten, oder die Oberfläche der Wand nimmt Kontrastmittel auf, denn sie ist hinter Gas heller als ihr Gewebe: Die Erkennung hat aus wenigen solchen gelernt und kann Polypen jeder Größe übersehen, obwohl vorher abgezogen wurde, was den Kanten hinzugefügt war</translation>
+    </message>
+    <message>
+        <source>the scan is more blurred than what detection has learnt from: polyps may be missed, and residue be told as polyps</source>
+        <translation>Die Aufnahme ist unschärfer als das, woraus die Erkennung gelernt hat: Polypen können übersehen und Reste als Polypen genannt sein</translation>
+    </message>
+    <message>
+        <source>the scan has samples up to %1 mm apart (CT colonography needs %2 at most): small and flat polyps may not show in it</source>
+        <translation>Die Abtastpunkte der Aufnahme liegen bis zu %1 mm auseinander (CT-Kolonographie verlangt höchstens %2): Kleine und flache Polypen sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the scan has samples up to %1 mm apart (CT colonography needs %2 at most): polyps may not show in it, large ones among them</source>
+        <translation>Die Abtastpunkte der Aufnahme liegen bis zu %1 mm auseinander (CT-Kolonographie verlangt höchstens %2): Polypen, auch große, sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the scan has slices %1 mm thick (%2 at most): small and flat polyps may not show in it</source>
+        <translation>Die Schichten der Aufnahme sind %1 mm dick (höchstens %2): Kleine und flache Polypen sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the scan has slices %1 mm thick (%2 at most): polyps may not show in it, large ones among them</source>
+        <translation>Die Schichten der Aufnahme sind %1 mm dick (höchstens %2): Polypen, auch große, sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the scan has samples up to %1 mm apart (CT colonography needs %2 at most) and slices %3 mm thick (%4 at most): small and flat polyps may not show in it</source>
+        <translation>Die Abtastpunkte der Aufnahme liegen bis zu %1 mm auseinander (CT-Kolonographie verlangt höchstens %2), und ihre Schichten sind %3 mm dick (höchstens %4): Kleine und flache Polypen sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the scan has samples up to %1 mm apart (CT colonography needs %2 at most) and slices %3 mm thick (%4 at most): polyps may not show in it, large ones among them</source>
+        <translation>Die Abtastpunkte der Aufnahme liegen bis zu %1 mm auseinander (CT-Kolonographie verlangt höchstens %2), und ihre Schichten sind %3 mm dick (höchstens %4): Polypen, auch große, sind darin vielleicht nicht zu sehen</translation>
+    </message>
+    <message>
+        <source>the slices at %1 and %2 mm differ %3 times as much as those around: the patient breathed or moved between them, or slices do not belong there</source>
+        <translation>Die Schichten bei %1 und %2 mm unterscheiden sich %3-mal so sehr wie die um sie her: Der Patient hat dazwischen geatmet oder sich bewegt, oder Schichten gehören nicht dorthin</translation>
+    </message>
+    <message>
+        <source>the slices at %1 and %2 mm differ %3 times as much as those around, and %4 more pair by %5 times and more: the patient breathed or moved between them, or slices do not belong there</source>
+        <translation>Die Schichten bei %1 und %2 mm unterscheiden sich %3-mal so sehr wie die um sie her, und %4 weiteres Paar %5-mal und mehr: Der Patient hat dazwischen geatmet oder sich bewegt, oder Schichten gehören nicht dorthin</translation>
+    </message>
+    <message>
+        <source>the slices at %1 and %2 mm differ %3 times as much as those around, and %4 more pairs by %5 times and more: the patient breathed or moved between them, or slices do not belong there</source>
+        <translation>Die Schichten bei %1 und %2 mm unterscheiden sich %3-mal so sehr wie die um sie her, und %4 weitere Paare %5-mal und mehr: Der Patient hat dazwischen geatmet oder sich bewegt, oder Schichten gehören nicht dorthin</translation>
+    </message>
+    <message>
+        <source>%1 slice is the same as the one before, the first at %2 mm</source>
+        <translation>%1 Schicht gleicht der vorigen, die erste bei %2 mm</translation>
+    </message>
+    <message>
+        <source>%1 slices are the same as the one before, the first at %2 mm</source>
+        <translation>%1 Schichten gleichen der vorigen, die erste bei %2 mm</translation>
+    </message>
+    <message>
+        <source>the record of the scan&apos;s series is damaged, so that nobody knows how thick its slices are</source>
+        <translation>Die Angaben zur Serie der Aufnahme sind beschädigt, sodass niemand weiß, wie dick ihre Schichten sind</translation>
+    </message>
+    <message>
+        <source>%1 ml are brighter than bone, metal or thick barium: at the height of their streaks walls and fluid may be wrong or missing, at %2</source>
+        <translation>%1 ml sind heller als Knochen, Metall oder dickes Barium: Auf der Höhe ihrer Streifen können Wände und Flüssigkeit falsch sein oder fehlen, bei %2</translation>
+    </message>
+    <message>
+        <source>the kernel is sharp: the wall beside gas is up to %1 HU bright, as tagged material is; thin residue on it is not seen, and detection may miss polyps, the more the sharper</source>
+        <translation>Der Faltungskern ist scharf: Die Wand neben Gas ist bis zu %1 HU hell, wie markiertes Material; dünne Reste auf ihr sind nicht zu sehen, und die Erkennung kann Polypen übersehen, je schärfer, desto mehr</translation>
+    </message>
+    <message>
+        <source>the air-fluid levels show that the patient lay %1, not %2 as the series says; the levels are believed</source>
+        <translation>Die Flüssigkeitsspiegel zeigen, dass der Patient %1 lag, nicht %2, wie die Serie sagt; den Spiegeln wird geglaubt</translation>
+    </message>
+    <message>
+        <source>patient position unknown, and no air-fluid level shows it: supine is assumed</source>
+        <translation>Die Lage des Patienten ist unbekannt, und kein Flüssigkeitsspiegel zeigt sie: Rückenlage wird angenommen</translation>
+    </message>
+    <message>
+        <source>%1 ml of air in the body are open to the room&apos;s, as through a stoma, and were taken for it: if they are bowel&apos;s, set up a wall (--cut X,Y,Z,R) between the skin and %2</source>
+        <translation>%1 ml Luft im Körper stehen mit der des Raums in Verbindung, wie durch ein Stoma, und wurden für sie gehalten: Sind sie im Darm, so ist eine Wand zu setzen (--cut X,Y,Z,R) zwischen der Haut und %2</translation>
+    </message>
+    <message>
+        <source>about %1 mm of the colon have no centerline, up to the %2 at %3</source>
+        <translation>Etwa %1 mm des Kolons haben keine Mittellinie, bis %2 bei %3</translation>
+    </message>
+    <message>
+        <source>%1 % of the wall lies in blind pouches, which the strip shows as dots: the largest, of %2 mm², begins at %3 mm of the centerline. Look at it from within; the course may pass by a part of the colon</source>
+        <translation>%1 % der Wand liegen in blinden Taschen, die der Streifen als Punkte zeigt: Die größte, von %2 mm², beginnt bei %3 mm der Mittellinie. Sie ist von innen anzusehen; der Verlauf kann an einem Teil des Kolons vorbeiführen</translation>
+    </message>
+    <message>
+        <source>areas are not weighted, as the strip would fold, or has a large blind pouch: it is the conformal one</source>
+        <translation>Flächen sind nicht gewichtet, da der Streifen sich falten würde oder eine große blinde Tasche hat: Er ist der konforme</translation>
+    </message>
+    <message>
+        <source>no course of a colon was found in the mask; it is taken as it is</source>
+        <translation>In der Maske wurde kein Verlauf eines Kolons gefunden; sie wird genommen, wie sie ist</translation>
+    </message>
+    <message>
+        <source>%1 % of the mask are as bright as soft tissue in the scan: it may be another scan&apos;s, or hold stool or fluid without tagging</source>
+        <translation>%1 % der Maske sind in der Aufnahme so hell wie Weichgewebe: Sie kann zu einer anderen Aufnahme gehören oder unmarkierten Stuhl oder unmarkierte Flüssigkeit enthalten</translation>
+    </message>
+    <message>
+        <source>the scan ends within the %1, which it cuts open over %2 mm2; what lies beyond is not in it, at %3</source>
+        <translation>Die Aufnahme endet im Kolon (%1) und schneidet es auf %2 mm² an; was jenseits liegt, fehlt in ihr, bei %3</translation>
+    </message>
+    <message>
+        <source>the %1 is collapsed over %2 mm, or a mass closes it, at %3</source>
+        <translation>%1: über %2 mm kollabiert oder von einer Raumforderung verschlossen, bei %3</translation>
+    </message>
+    <message>
+        <source>the %1 is collapsed, or a mass closes it, at %2</source>
+        <translation>%1: kollabiert oder von einer Raumforderung verschlossen, bei %2</translation>
+    </message>
+    <message>
+        <source>what looks like a thin wall in the %1 was taken for open lumen, at %2</source>
+        <translation>%1: Was wie eine dünne Wand aussieht, wurde für offenes Lumen gehalten, bei %2</translation>
+    </message>
+    <message>
+        <source>the way on from the %1 is not sure (%2 %), at %3</source>
+        <translation>%1: Wie es von hier weitergeht, ist nicht sicher (%2 %), bei %3</translation>
+    </message>
+    <message>
+        <source>%1 ml at the wall of the %2 are as bright as metal, as of a stent, or thick barium: what lies there is not seen, at %3</source>
+        <translation>%2: %1 ml an der Wand sind so hell wie Metall, etwa eines Stents, oder dickes Barium; was dort liegt, ist nicht zu sehen, bei %3</translation>
+    </message>
+    <message>
+        <source>%1 ml of %2 nearest to the %3 lie open to the colon and were taken for small bowel, at %4</source>
+        <translation>%3: %1 ml %2 in der Nähe sind zum Kolon offen und wurden für Dünndarm gehalten, bei %4</translation>
+    </message>
+    <message>
+        <source>%1 ml of %2 nearest to the %3, as wide as colon and where it may lie, were taken for other than colon, at %4</source>
+        <translation>%3: %1 ml %2 in der Nähe, so weit wie Kolon und dort, wo es liegen kann, wurden nicht für Kolon gehalten, bei %4</translation>
+    </message>
+    <message>
+        <source>%1 ml of %2 nearest to the %3 were taken for other than colon, at %4</source>
+        <translation>%3: %1 ml %2 in der Nähe wurden nicht für Kolon gehalten, bei %4</translation>
+    </message>
+    <message>
+        <source>%1 ml of gas away from the course were taken for the stomach&apos;s, other bowel&apos;s or free, at %2</source>
+        <translation>%1 ml Gas abseits des Verlaufs wurden für das des Magens, anderen Darms oder für freies gehalten, bei %2</translation>
+    </message>
+    <message>
+        <source>%1 ml in the %2 are as bright as tagged material, which shows no level in this scan; they may be bone, at %3</source>
+        <translation>%2: %1 ml sind so hell wie markiertes Material, das in dieser Aufnahme nirgends einen Spiegel zeigt; es kann Knochen sein, bei %3</translation>
+    </message>
+    <message>
+        <source>a wall of %1 mm2 between two loops was rebuilt, at %2</source>
+        <translation>Eine Wand von %1 mm² zwischen zwei Schlingen wurde neu gebildet, bei %2</translation>
+    </message>
+    <message>
+        <source>a wall of %1 mm2 was set up, beyond which gas and fluid were taken for other bowel; they may be the colon&apos;s, at %2</source>
+        <translation>Eine Wand von %1 mm² wurde gesetzt, jenseits derer Gas und Flüssigkeit für anderen Darm gehalten wurden; sie können zum Kolon gehören, bei %2</translation>
+    </message>
+    <message>
+        <source>%1 ml of fluid without tagging were taken out of the %2; its wall shows little contrast and may lie elsewhere by millimetres</source>
+        <translation>%2: %1 ml unmarkierte Flüssigkeit wurden herausgenommen; die Wand zeigt wenig Kontrast und kann um Millimeter anderswo liegen</translation>
+    </message>
+    <message>
+        <source>%1 ml of gas stand in the lumen of the %2 behind a wall of their own, as in a catheter&apos;s balloon; both were taken out, at %3</source>
+        <translation>%2: %1 ml Gas stehen im Lumen hinter einer eigenen Wand, wie im Ballon eines Katheters; beides wurde herausgenommen, bei %3</translation>
+    </message>
+    <message>
+        <source>fluid without tagging (%1 HU) stands under the gas in the %2, its surface %3 mm2; what lies in it and beneath is not seen, at %4</source>
+        <translation>%2: Unmarkierte Flüssigkeit (%1 HU) steht unter dem Gas, ihre Oberfläche %3 mm²; was in ihr und darunter liegt, ist nicht zu sehen, bei %4</translation>
+    </message>
+    <message>
+        <source>fluid of too little tagging (%1 HU) stands under the gas in the %2, its surface %3 mm2; what lies in it and beneath is not seen, at %4</source>
+        <translation>%2: Zu schwach markierte Flüssigkeit (%1 HU) steht unter dem Gas, ihre Oberfläche %3 mm²; was in ihr und darunter liegt, ist nicht zu sehen, bei %4</translation>
+    </message>
+    <message>
+        <source>the tagging is weak: what stands under the gas has %1 HU in the median, where 300 to 900 are best; residue may hide polyps, and be taken for them</source>
+        <translation>Die Markierung ist schwach: Was unter dem Gas steht, hat im Median %1 HU, wo 300 bis 900 am besten sind; Reste können Polypen verdecken und für sie gehalten werden</translation>
+    </message>
+    <message>
+        <source>another course is nearly as likely (%1 %): it adds %2 ml and drops %3 ml, at %4</source>
+        <translation>Ein anderer Verlauf ist fast so wahrscheinlich (%1 %): Er nimmt %2 ml hinzu und lässt %3 ml weg, bei %4</translation>
+    </message>
+    <message>
+        <source>the course is right with no more than %1 %; gravest: %2</source>
+        <translation>Der Verlauf stimmt mit höchstens %1 %; am schwersten wiegt: %2</translation>
+    </message>
+    <message>
+        <source>the rectum was not found: the colon begins in the %1</source>
+        <translation>Das Rektum wurde nicht gefunden: Das Kolon beginnt hier: %1</translation>
+    </message>
+    <message>
+        <source>the cecum was not found: the colon ends in the %1</source>
+        <translation>Das Zökum wurde nicht gefunden: Das Kolon endet hier: %1</translation>
+    </message>
+    <message>
+        <source>%1 ml that nothing joins to the lumen were left out</source>
+        <translation>%1 ml, die nichts mit dem Lumen verbindet, wurden weggelassen</translation>
+    </message>
+    <message>
+        <source>two loops may only touch where %1 mm were crossed from the %2 on</source>
+        <translation>%2: Wo %1 mm überbrückt wurden, berühren sich vielleicht nur zwei Schlingen</translation>
+    </message>
+    <message>
+        <source>a loop may lie in the %1 mm that were crossed from the %2 on</source>
+        <translation>%2: In den %1 mm, die überbrückt wurden, kann eine Schlinge liegen</translation>
+    </message>
+    <message>
+        <source>what was taken for open in the %1 may be a wall</source>
+        <translation>%1: Was für offen gehalten wurde, kann eine Wand sein</translation>
+    </message>
+    <message>
+        <source>no more than %1 mm of %2 in all were found</source>
+        <translation>%2: Nicht mehr als %1 mm wurden insgesamt gefunden</translation>
+    </message>
+    <message>
+        <source>no more than %1 mm of %2 were found</source>
+        <translation>%2: Nicht mehr als %1 mm wurden gefunden</translation>
+    </message>
+    <message>
+        <source>the rectum was not found</source>
+        <translation>Das Rektum wurde nicht gefunden</translation>
+    </message>
+    <message>
+        <source>the cecum was not found</source>
+        <translation>Das Zökum wurde nicht gefunden</translation>
+    </message>
+    <message>
+        <source>the course may end before the cecum</source>
+        <translation>Der Verlauf endet vielleicht vor dem Zökum</translation>
+    </message>
+    <message>
+        <source>the %1 goes on beyond the edge of the scan</source>
+        <translation>%1: Geht jenseits des Rands der Aufnahme weiter</translation>
+    </message>
+    <message>
+        <source>%1 % of the mask lie in soft tissue</source>
+        <translation>%1 % der Maske liegen in Weichgewebe</translation>
+    </message>
+    <message>
+        <source>%1 ml of %2 as wide as colon, and where it may lie, were left out near the %3</source>
+        <translation>%3: %1 ml %2, so weit wie Kolon und dort, wo es liegen kann, wurden in der Nähe weggelassen</translation>
+    </message>
+    <message>
+        <source>%1 ml of gas near the %2 may be colon</source>
+        <translation>%2: %1 ml Gas in der Nähe können Kolon sein</translation>
+    </message>
+    <message>
+        <source>%1 ml of fluid that lie open to the %2 may be colon</source>
+        <translation>%2: %1 ml Flüssigkeit, die dorthin offen sind, können Kolon sein</translation>
+    </message>
+    <message>
+        <source>a wall of %1 mm2 that was set up is wider than bowel that touches</source>
+        <translation>Eine gesetzte Wand von %1 mm² ist breiter als Darm, der sich berührt</translation>
+    </message>
+    <message>
+        <source>a rebuilt wall of %1 mm2 may be none</source>
+        <translation>Eine neu gebildete Wand von %1 mm² ist vielleicht keine</translation>
+    </message>
+    <message>
+        <source>%1 ml of untagged fluid may be other than lumen</source>
+        <translation>%1 ml unmarkierte Flüssigkeit gehören vielleicht nicht zum Lumen</translation>
+    </message>
+    <message>
+        <source>untagged fluid in the %1 may hide lumen</source>
+        <translation>%1: Unmarkierte Flüssigkeit kann Lumen verbergen</translation>
+    </message>
+    <message>
+        <source>%1 small and %2 full-size phantoms made by haustra phantom, and calibrated on %3 small and %4 full-size others, no patient: how probable a place is to be a polyp holds for phantoms, and is no more than an ordering for patients</source>
+        <translation>%1 kleinen und %2 großen Phantomen von „haustra phantom“, kalibriert an %3 kleinen und %4 großen anderen, keinem Patienten: Wie wahrscheinlich ein Ort ein Polyp ist, gilt für Phantome; für Patienten ist es nur eine Reihenfolge</translation>
+    </message>
+    <message>
+        <source>rectum</source>
+        <translation>Rektum</translation>
+    </message>
+    <message>
+        <source>sigmoid</source>
+        <translation>Sigma</translation>
+    </message>
+    <message>
+        <source>descending colon</source>
+        <translation>Colon descendens</translation>
+    </message>
+    <message>
+        <source>splenic flexure</source>
+        <translation>linke Flexur</translation>
+    </message>
+    <message>
+        <source>transverse colon</source>
+        <translation>Colon transversum</translation>
+    </message>
+    <message>
+        <source>hepatic flexure</source>
+        <translation>rechte Flexur</translation>
+    </message>
+    <message>
+        <source>ascending colon</source>
+        <translation>Colon ascendens</translation>
+    </message>
+    <message>
+        <source>cecum</source>
+        <translation>Zökum</translation>
+    </message>
+    <message>
+        <source>fluid without tagging</source>
+        <translation>unmarkierte Flüssigkeit</translation>
+    </message>
+    <message>
+        <source>tagged material</source>
+        <translation>markiertes Material</translation>
+    </message>
+    <message>
+        <source>gas</source>
+        <translation>Gas</translation>
+    </message>
+    <message>
+        <source>fluid</source>
+        <translation>Flüssigkeit</translation>
+    </message>
+    <message>
+        <source>supine</source>
+        <translation>auf dem Rücken</translation>
+    </message>
+    <message>
+        <source>prone</source>
+        <translation>auf dem Bauch</translation>
+    </message>
+    <message>
+        <source>on the left side</source>
+        <translation>auf der linken Seite</translation>
+    </message>
+    <message>
+        <source>on the right side</source>
+        <translation>auf der rechten Seite</translation>
+    </message>
+    <message>
+        <source>left-decubitus</source>
+        <translation>auf der linken Seite</translation>
+    </message>
+    <message>
+        <source>right-decubitus</source>
+        <translation>auf der rechten Seite</translation>
+    </message>
+    <message>
+        <source> and </source>
+        <comment>between the last two</comment>
+        <translation> und </translation>
+    </message>
+    <message>
+        <source> and elsewhere</source>
+        <translation> und anderswo</translation>
+    </message>
+</context>
+<context>
     <name>haustra::window::BookmarkPanel</name>
     <message>
         <source>B marks the place in view; Shift+B with a note.</source>
