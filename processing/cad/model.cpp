@@ -253,11 +253,14 @@ Result<CadModel> modelOfText(std::string_view text, const std::string& place) {
         const ModelJson json = ModelJson::parse(text);
         if (!json.contains("haustra_cad_model"))
             throw std::invalid_argument("it has no haustra_cad_model, a model's version");
-        if (json.at("haustra_cad_model").get<int>() != modelVersion)
+        const ModelJson& version = json.at("haustra_cad_model");
+        if (!version.is_number_integer())
+            throw std::invalid_argument("haustra_cad_model, its version, is no whole number");
+        if (version != modelVersion)
             return fail(ErrorKind::unsupported,
-                        printed("the model is of version %d, and this program reads %d: it must be "
+                        printed("the model is of version %s, and this program reads %d: it must be "
                                 "trained anew",
-                                json.at("haustra_cad_model").get<int>(), modelVersion),
+                                version.dump().c_str(), modelVersion),
                         place);
         const ModelJson& names = json.at("features");
         bool same = names.size() == featureNames.size();

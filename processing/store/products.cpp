@@ -135,7 +135,7 @@ const Catalogue& catalogue() {
          .endings = {".png", ".tif", ".tiff", ".exr", ".jpg", ".jpeg"},
          .help = "of a colon: what lies beneath the whole wall, as a translucent picture, from the "
                  "rectum on the left to the cecum: blue is fat, green the wall's tissue, red what "
-                 "is denser"},
+                 "is denser, black next to nothing, as in a thin fold with gas behind it"},
     });
     return products;
 }

@@ -44,7 +44,8 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
         ->check(CLI::IsMember(render::opticsPresets()))
         ->capture_default_str();
     group->add_flag("--caption", options.caption,
-                    "Draw the strip's ends and a scale of millimetres along the centerline");
+                    "Draw the strip's ends and a scale of millimetres along the centerline, and "
+                    "around findings rings with their numbers");
     auto* findings =
         group->add_flag("--findings", options.findings,
                         "Colour the case's findings green, and what scored lower violet");

@@ -265,6 +265,7 @@ TEST(Model, WhatIsNoneIsRefused) {
           std::string("[]"),
           sound.substr(0, sound.size() - 40),
           with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
+          with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 1e99, \"x\": "),
           with("diameter_mm", "weight_kg"),
           withTree("[[99,0.5,2],1.0,-1.0]"),
           withTree("[[0.9,0.5,2],1.0,-1.0]"),
