@@ -335,12 +335,14 @@ void FindingsPanel::fill() {
             item->setForeground(column, theme().muted);
         }
     }
-    list_->setMaximumHeight(heightOfRows(std::max(leastRows, list_->topLevelItemCount())));
     shownCurrent_ = 0;
     state_->setText(stateText());
     const QString notes = notesText();
     if (notes_->toPlainText() != notes) notes_->setPlainText(notes);
     notes_->setVisible(!notes.isEmpty());
+    list_->setMaximumHeight(notes.isEmpty()
+                                ? QWIDGETSIZE_MAX
+                                : heightOfRows(std::max(leastRows, list_->topLevelItemCount())));
 }
 
 int FindingsPanel::heightOfRows(int rows) const {

@@ -9,7 +9,11 @@
 namespace haustra::window {
 namespace {
 
-// As the folders below processing/ tell them (told_sentences_test holds them to that).
+// No program joins more; whoever does wants to keep the window busy.
+constexpr qsizetype mostJoined = 4;
+
+// As the folders below processing/, and server/cli, tell them (told_sentences_test holds them to
+// that).
 constexpr const char* sentences[] = {
     // Of findings: cad/detect.cpp, cad/wall_edges.cpp, pipeline/cad_stage.cpp.
     QT_TRANSLATE_NOOP("ToldSentences",
@@ -63,7 +67,8 @@ constexpr const char* sentences[] = {
     QT_TRANSLATE_NOOP("ToldSentences",
                       "the scan is more blurred than what detection has learnt from: polyps may be "
                       "missed, and residue be told as polyps"),
-    // Of the scan: core/scan_coarseness.cpp, core/slice_steps.cpp, segmentation/.
+    // Of the scan: core/scan_coarseness.cpp, core/slice_steps.cpp, store/case_trust.cpp,
+    // segmentation/.
     QT_TRANSLATE_NOOP("ToldSentences",
                       "the scan has samples up to %1 mm apart (CT colonography needs %2 at most): "
                       "small and flat polyps may not show in it"),
@@ -103,8 +108,8 @@ constexpr const char* sentences[] = {
                       "the record of the scan's series is damaged, so that nobody knows how thick "
                       "its slices are"),
     QT_TRANSLATE_NOOP("ToldSentences",
-                      "%1 ml are brighter than bone, metal or thick barium: at the height of their "
-                      "streaks walls and fluid may be wrong or missing, at %2"),
+                      "%1 ml are brighter than bone, as metal and thick barium are: at the height "
+                      "of their streaks walls and fluid may be wrong or missing, at %2"),
     QT_TRANSLATE_NOOP(
         "ToldSentences",
         "the kernel is sharp: the wall beside gas is up to %1 HU bright, as tagged material is; "
@@ -115,7 +120,7 @@ constexpr const char* sentences[] = {
     QT_TRANSLATE_NOOP(
         "ToldSentences",
         "patient position unknown, and no air-fluid level shows it: supine is assumed"),
-    // Of the colon: segmentation/record_colon.cpp.
+    // Of the colon: segmentation/, core/colon_record.cpp, pipeline/.
     QT_TRANSLATE_NOOP(
         "ToldSentences",
         "%1 ml of air in the body are open to the room's, as through a stoma, and were taken for "
@@ -209,15 +214,18 @@ constexpr const char* sentences[] = {
     QT_TRANSLATE_NOOP("ToldSentences", "a rebuilt wall of %1 mm2 may be none"),
     QT_TRANSLATE_NOOP("ToldSentences", "%1 ml of untagged fluid may be other than lumen"),
     QT_TRANSLATE_NOOP("ToldSentences", "untagged fluid in the %1 may hide lumen"),
-    // What the built-in model has learnt from.
+    // What a model has learnt from: cad/models, and cad train and calibrate.
     QT_TRANSLATE_NOOP(
         "ToldSentences",
         "%1 small and %2 full-size phantoms made by haustra phantom, and calibrated on %3 small "
         "and %4 full-size others, no patient: how probable a place is to be a polyp holds for "
         "phantoms, and is no more than an ordering for patients"),
+    QT_TRANSLATE_NOOP("ToldSentences", "calibrated on %1 other case"),
+    QT_TRANSLATE_NOOP("ToldSentences", "calibrated on %1 other cases"),
+    QT_TRANSLATE_NOOP("ToldSentences", "cases that somebody chose"),
 };
 
-// What stands in a sentence in place of a number. A longer one comes before one that it begins as.
+// What stands in a sentence in place of a number: toString of core/colon_record.h and core/grid.h.
 constexpr const char* words[] = {
     QT_TRANSLATE_NOOP("ToldSentences", "rectum"),
     QT_TRANSLATE_NOOP("ToldSentences", "sigmoid"),
@@ -310,6 +318,7 @@ std::optional<QString> translatedOne(const QString& told) {
             else
                 filled += text[at];
         }
+        if (text.startsWith(u'%')) filled[0] = filled[0].toUpper();
         return filled;
     }
     return std::nullopt;
@@ -320,9 +329,17 @@ std::optional<QString> translatedOne(const QString& told) {
 QString translatedSentence(const QString& told) {
     if (const auto whole = translatedOne(told)) return *whole;
     QStringList parts = told.split(QStringLiteral("; "));
+    if (parts.size() > mostJoined) return told;
     for (QString& part : parts)
         part = translatedOne(part).value_or(part);
     return parts.join(QStringLiteral("; "));
+}
+
+QStringList knownWords() {
+    QStringList known;
+    for (const char* word : words)
+        known += QString::fromUtf8(word);
+    return known;
 }
 
 QStringList knownSentences() {

@@ -58,8 +58,8 @@ std::optional<std::string> metalIn(const Volume<std::int16_t>& hu,
     for (const BrightBody& body : bodies)
         allMl += body.ml, places.add(body.placeMm);
     return printed(
-               "%.1f ml are brighter than bone, metal or thick barium: at the height of their "
-               "streaks walls and fluid may be wrong or missing, at ",
+               "%.1f ml are brighter than bone, as metal and thick barium are: at the height of "
+               "their streaks walls and fluid may be wrong or missing, at ",
                allMl) +
            places.text();
 }

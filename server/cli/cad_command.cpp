@@ -560,7 +560,8 @@ constexpr const char* columnsHelp =
     "submerged (under tagged fluid), coated (with tagged residue), hidden (in fluid or stool "
     "without tagging). FP: false findings a scan, before: those before they were weighed, reduced: "
     "the share that weighing took away. |d|: mean error of the diameter of what was found, in mm, "
-    "95 %: what 95 % of the errors do not exceed. Below each group: found of all by the truth's "
+    "95 %: what 95 % of the errors do not exceed; -: nothing was found. Below each group: found of "
+    "all by the truth's "
     "kinds, what the false ones lie on, and those that are small benign growths, which count as "
     "neither.";
 

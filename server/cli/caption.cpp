@@ -85,7 +85,8 @@ public:
     Result<void> addFrame(const Panel& panel, const PictureFrame& frame);
     Result<void> addBar(const Panel& panel, double mmPerPixel);
     Result<void> addLegend(const Panel& panel);
-    Result<void> addPlace(const Panel& panel, const NumberedPlace& place);
+    /// The last to be added: rings give way to words, numbers to all.
+    Result<void> addPlaces(const Panel& panel, const std::vector<NumberedPlace>& places);
 
 private:
     Result<Box> boxOf(const pictures::Marks::Words& words) const {
@@ -172,26 +173,44 @@ Result<void> Layout::addLegend(const Panel& panel) {
     return {};
 }
 
-/// A ring, and the number on the first of its sides that is free.
-Result<void> Layout::addPlace(const Panel& panel, const NumberedPlace& place) {
-    const glm::dvec2 at = place.pixel + glm::dvec2(panel.left, 0.0);
-    const glm::dvec2 inPanel = place.pixel / glm::dvec2(panel.size);
-    if (!glm::all(glm::greaterThanEqual(inPanel, glm::dvec2(0.0))) ||
-        !glm::all(glm::lessThan(inPanel, glm::dvec2(1.0))))
-        return {};
+Result<void> Layout::addPlaces(const Panel& panel, const std::vector<NumberedPlace>& places) {
     const double radius = 0.6 * height() + 2.0;
-    constexpr int corners = 12;
-    const auto corner = [&](int n) {
-        const double angle = 2.0 * std::numbers::pi * n / corners;
-        return glm::ivec2(glm::round(at + radius * glm::dvec2(std::cos(angle), std::sin(angle))));
+    const auto isIn = [](glm::dvec2 at, glm::dvec2 low, glm::dvec2 high) {
+        return glm::all(glm::greaterThanEqual(at, low)) && glm::all(glm::lessThan(at, high));
     };
-    for (int n = 0; n < corners; ++n)
-        marks_.lines.push_back({corner(n), corner(n + 1)});
-    for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0}, {0, -1}, {0, 1}}) {
-        const pictures::Marks::Words words{std::to_string(place.number),
-                                           glm::ivec2(glm::round(at + (radius + 3.0) * side)),
-                                           0.5 - 0.5 * side};
-        if (isFree(panel, TRY(boxOf(words)))) return addAlways(words);
+    const std::vector<Box> words = taken_;
+    const auto isCovered = [&](glm::dvec2 at) {
+        return std::ranges::any_of(
+            words, [&](const Box& box) { return isIn(at, box.low - 2.0, box.high + 2.0); });
+    };
+    std::vector<NumberedPlace> ringed;
+    for (const NumberedPlace& place : places) {
+        if (!isIn(place.pixel, glm::dvec2(0.0), panel.size)) continue;
+        ringed.push_back(place);
+        const glm::dvec2 at = place.pixel + glm::dvec2(panel.left, 0.0);
+        constexpr int corners = 12;
+        const auto corner = [&](int n) {
+            const double angle = 2.0 * std::numbers::pi * n / corners;
+            return glm::ivec2(
+                glm::round(at + radius * glm::dvec2(std::cos(angle), std::sin(angle))));
+        };
+        for (int n = 0; n < corners; ++n) {
+            const pictures::Marks::Line side{corner(n), corner(n + 1), place.color};
+            if (!isCovered(0.5 * glm::dvec2(side.from + side.to))) marks_.lines.push_back(side);
+        }
+        taken_.push_back({at - radius, at + radius});
+    }
+    for (const NumberedPlace& place : ringed) {
+        const glm::dvec2 at = place.pixel + glm::dvec2(panel.left, 0.0);
+        const double away = radius + 0.25 * height() + 3.0;
+        for (const glm::dvec2 side : {glm::dvec2(1, 0), {-1, 0}, {0, -1}, {0, 1}}) {
+            const pictures::Marks::Words number{std::to_string(place.number),
+                                                glm::ivec2(glm::round(at + away * side)),
+                                                0.5 - 0.5 * side, place.color};
+            if (!isFree(panel, TRY(boxOf(number)))) continue;
+            TRY(addAlways(number));
+            break;
+        }
     }
     return {};
 }
@@ -250,8 +269,7 @@ Result<pictures::Marks> caption(const std::string& line, const std::optional<Pic
         TRY(layout.addBar(whole, frame->mmPerPixel));
     }
     TRY(layout.addText(whole, line));
-    for (const NumberedPlace& place : places)
-        TRY(layout.addPlace(whole, place));
+    TRY(layout.addPlaces(whole, places));
     return std::move(layout).marks();
 }
 
@@ -272,32 +290,33 @@ Result<pictures::Marks> comparisonCaption(const std::string& line, const Picture
 }
 
 Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size,
-                                     const std::vector<NumberedPlace>& findings) {
+                                     const std::vector<NumberedPlace>& places) {
     Layout layout(std::clamp(size.x / 40.0, 6.0, 24.0));
     const int gap = layout.gap();
     TRY(layout.addAlways({"cecum", {size.x / 2, gap}, {0.5, 0.0}}));
     TRY(layout.addAlways({"rectum", {size.x / 2, size.y - gap}, {0.5, 1.0}}));
-    for (const NumberedPlace& finding : findings)
-        TRY(layout.addPlace({0, size}, finding));
-
-    const auto places = camerasOnStrip(map, size.y);
-    if (places.size() < 2) return std::move(layout).marks();
-    const double length = places.back().x - places.front().x;
+    const auto cameras = camerasOnStrip(map, size.y);
+    if (cameras.size() < 2) {
+        TRY(layout.addPlaces({0, size}, places));
+        return std::move(layout).marks();
+    }
+    const double length = cameras.back().x - cameras.front().x;
     const double ticks = std::max(1.0, size.y / (6.0 * layout.height()));
     const double least = std::max(length / ticks, 1.0);
     const double step = roundBelow(least) < least ? roundBelow(2.5 * least) : least;
     std::size_t at = 0;
-    for (double arc = std::ceil(places.front().x / step) * step; arc <= places.back().x;
+    for (double arc = std::ceil(cameras.front().x / step) * step; arc <= cameras.back().x;
          arc += step) {
-        while (at + 2 < places.size() && places[at + 1].x < arc)
+        while (at + 2 < cameras.size() && cameras[at + 1].x < arc)
             ++at;
-        const glm::dvec2 low = places[at], high = places[at + 1];
+        const glm::dvec2 low = cameras[at], high = cameras[at + 1];
         const double part = (arc - low.x) / std::max(high.x - low.x, 1e-9);
         const int row = int(std::lround(glm::mix(low.y, high.y, std::clamp(part, 0.0, 1.0))));
         const int beside = std::clamp(row, gap, std::max(gap, size.y - gap));  // whole at the ends
         TRY(layout.addTick({0, size}, {fmt::format("{:g} mm", arc), {3 * gap, beside}, {0.0, 0.5}},
                            {{0, row}, {2 * gap, row}}));
     }
+    TRY(layout.addPlaces({0, size}, places));
     return std::move(layout).marks();
 }
 

@@ -29,6 +29,7 @@ std::optional<PictureFrame> frameOf(const Camera& camera, int pictureHeight);
 struct NumberedPlace {
     int number = 0;
     glm::dvec2 pixel{0.0};
+    glm::u8vec3 color{255};
 };
 
 /// Where a direction of the patient points: one or two of L, R, A, P, H and F, the nearer first.
@@ -37,7 +38,7 @@ std::string orientation(glm::dvec3 direction);
 /// `line` at the top; with a frame, the letters of the directions at the edges, which nothing
 /// covers, and a bar of a round number of millimetres. A line that would reach a letter is a row
 /// lower, and one that is too long is cut short; a bar without room is left out. Around each place
-/// in the picture a ring, with its number beside it where that has room.
+/// in the picture a ring, but for where words are, with its number beside it if that has room.
 Result<pictures::Marks> caption(const std::string& line, const std::optional<PictureFrame>& frame,
                                 glm::ivec2 size, const std::vector<NumberedPlace>& places = {});
 
@@ -48,7 +49,7 @@ Result<pictures::Marks> comparisonCaption(const std::string& line, const Picture
 
 /// Of the whole strip in a picture of `size`: its ends, and a scale of millimetres along the
 /// centerline, from the rectum, where the wall's cameras stand. Where the map squeezes the colon,
-/// only as many of its marks as can be read. Places as of caption.
+/// only as many of its marks as can be read. Places are ringed as by caption.
 Result<pictures::Marks> stripCaption(const FlatMap& map, glm::ivec2 size,
                                      const std::vector<NumberedPlace>& places = {});
 

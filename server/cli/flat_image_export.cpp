@@ -8,7 +8,6 @@
 #include "cli/progress_bar.h"
 #include "cli/provenance.h"
 #include "cli/wall_paint.h"
-#include "core/flat_lookup.h"
 #include "core/strip_layout.h"
 #include "gpu/context.h"
 #include "render/strip_picture.h"
@@ -111,11 +110,12 @@ Result<void> exportFlatImage(const store::Case& source, const fs::path& file,
     pictures::Marks marks;
     if (options.caption) {
         const FlatWindow whole{{0.5, 0.5 * size.y / options.width}, double(options.width)};
-        const FlatLookup lookup(prepared.flatMap);
         std::vector<NumberedPlace> places;
         for (const PaintedFindings::Place& finding : painted.places)
-            places.push_back(
-                {finding.number, whole.pixelFromFlat(lookup.nearest(finding.wallMm).flat, size)});
+            for (const double turn : {-1.0, 0.0, 1.0})  // beyond the seam in its margins, too
+                places.push_back({finding.number,
+                                  whole.pixelFromFlat(finding.flat + glm::dvec2(turn, 0.0), size),
+                                  finding.color});
         marks = TRY(stripCaption(*prepared.flatMap, size, places));
     }
     auto context = TRY(gpu::Context::create());

@@ -243,8 +243,9 @@ void addPictureOptions(CLI::App& command, RenderArguments& my) {
                      "Write into the picture what it shows and where; onto parallel views, the "
                      "patient's directions at the edges and a bar of millimetres; onto a "
                      "comparison, titles and the tissues' colours; with --paint findings, onto the "
-                     "overview and the whole strip, rings and the findings' numbers. What has no "
-                     "room is cut short or left out, but for the directions");
+                     "overview, where the colon hides them, too, and the whole strip, rings and "
+                     "the findings' numbers. What has no room is cut short or left out, but for "
+                     "the directions");
     command
         .add_option(
             "--out", my.out,

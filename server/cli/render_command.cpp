@@ -169,10 +169,9 @@ Result<Image> drawFlattened(const RenderArguments& arguments, const Products& pr
     const auto [width, height] = std::pair(arguments.size.x, arguments.size.y);
     if (arguments.shown() == View::flattened) {
         const StripLayout layout = layOutStrip(products.flatMap->height, arguments.size);
-        const FlatLookup lookup(products.flatMap);
         for (const PaintedFindings::Place& finding : products.findings)
             notes.findings.push_back(
-                {finding.number, layout.pixelFromFlat(lookup.nearest(finding.wallMm).flat)});
+                {finding.number, layout.pixelFromFlat(finding.flat), finding.color});
         return renderer.render(
             render::FlatOverview{std::move(optics), marchOf(arguments), products.paint}, width,
             height);
@@ -204,8 +203,9 @@ Result<Image> drawOverview(const RenderArguments& arguments, const Products& pro
     view.camera = cameraOf(orbit);
     addCamera(notes, view.camera, arguments.size.y);
     for (const PaintedFindings::Place& finding : products.findings)
-        notes.findings.push_back(
-            {finding.number, projected(view.camera, finding.wallMm, arguments.size)});
+        notes.findings.push_back({finding.number,
+                                  projected(view.camera, finding.wallMm, arguments.size),
+                                  finding.color});
     view.bookmarksMm = arguments.marksMm;
     view.paint = products.paint;
     view.body = arguments.body;

@@ -3,6 +3,7 @@
 #include "core/bridges.h"
 #include "core/ct_scan.h"
 #include "core/findings.h"
+#include "core/flat_lookup.h"
 #include "pictures/picture_file.h"
 #include "render/wall/finding_paint.h"
 #include "render/wall/strip_painter.h"
@@ -71,6 +72,7 @@ Result<PaintedFindings> paintFindings(const store::Case& source, std::shared_ptr
         const auto lumen = TRY(source.readVolume<std::uint8_t>(store::product::lumen));
         bridged = bridgedTriangles(map->surface, lumen);
     }
+    const FlatLookup lookup(map);
     auto sight = TRY(render::WallSight::of(std::move(map), std::move(bridged)));
     const auto painter = TRY(render::StripPainter::of(std::move(sight)));
     PaintedFindings painted;
@@ -78,7 +80,10 @@ Result<PaintedFindings> paintFindings(const store::Case& source, std::shared_ptr
     const auto add = [&](const Finding& finding, render::FindingShade shade) {
         shades.push_back(shade);
         if (shade != render::FindingShade::none)
-            painted.places.push_back({int(shades.size()), finding.wallMm});
+            painted.places.push_back(
+                {int(shades.size()), finding.wallMm, lookup.nearest(finding.wallMm).flat,
+                 shade == render::FindingShade::finding ? render::findingColor
+                                                        : render::candidateColor});
     };
     for (const Finding& finding : findings.findings)
         add(finding, render::FindingShade::finding);

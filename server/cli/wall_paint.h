@@ -26,6 +26,8 @@ struct PaintedFindings {
     struct Place {
         int number = 0;  ///< in the case, from 1, as a reading station tells it
         glm::dvec3 wallMm{0.0};
+        glm::dvec2 flat{0.0};  ///< the same on the map; x in [0, 1)
+        glm::u8vec3 color{0};  ///< that the wall is mixed with there
     };
     std::shared_ptr<const render::WallPaint> paint;
     std::vector<Place> places;  ///< of those that are painted

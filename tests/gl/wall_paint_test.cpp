@@ -251,7 +251,7 @@ TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) 
     findings.grid = ct.grid();
     for (const double part : {0.3, 0.6}) {
         Finding finding;
-        finding.positionMm = tube.positionMm({0.4, part * tube.height()});
+        finding.positionMm = finding.wallMm = tube.positionMm({0.4, part * tube.height()});
         finding.diameterMm = 6.0;
         finding.score = 1.2 - 1.5 * part;
         (part < 0.5 ? findings.findings : findings.candidates).push_back(finding);
@@ -275,6 +275,16 @@ TEST(WallPaintOfACase, ColoursItsFindingsAndTheCandidatesThatAreProbableEnough) 
     }
     EXPECT_GT(both[0], 100);
     EXPECT_GT(both[1], 100);
+    // And says where they are, each with its number and the colour of its paint.
+    ASSERT_EQ(few->places.size(), 1u);
+    ASSERT_EQ(all->places.size(), 2u);
+    for (int n = 0; n < 2; ++n) {
+        const auto& place = all->places[std::size_t(n)];
+        EXPECT_EQ(place.number, n + 1);
+        EXPECT_LT(glm::distance(place.flat, glm::dvec2(0.4, (0.3 + 0.3 * n) * tube.height())),
+                  0.02);
+        EXPECT_EQ(place.color, n == 0 ? findingColor : candidateColor);
+    }
     // Of another scan's grid they are not painted.
     findings.grid.patientFromVoxel[3].z += 2.0;
     ASSERT_TRUE(

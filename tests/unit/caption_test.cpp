@@ -113,6 +113,28 @@ TEST(Caption, RingsAFindingAndNumbersItWhereItCanBeRead) {
     EXPECT_EQ(count(marks, "2"), 1) << "to the left of its ring, at the picture's edge";
     EXPECT_EQ(count(marks, "3"), 0) << "it is not in the picture";
     EXPECT_LT(marks.words.size(), bare.words.size() + places.size() - 1);
+    // A ring over words leaves them to be read.
+    const pictures::Marks over =
+        caption("a finding lies here", PictureFrame{}, size, {{7, {30.0, 12.0}}}).value();
+    expectReadable(over, size, "");
+    for (std::size_t n = bare.lines.size(); n < over.lines.size(); ++n)
+        for (const auto& words : over.words) {
+            const Box box = boxOf(over, words);
+            const glm::dvec2 middle = 0.5 * glm::dvec2(over.lines[n].from + over.lines[n].to);
+            EXPECT_FALSE(glm::all(glm::greaterThan(middle, box.low)) &&
+                         glm::all(glm::lessThan(middle, box.high)))
+                << words.text;
+        }
+    EXPECT_GT(over.lines.size(), bare.lines.size()) << "but what of it does not";
+    // No number lies on a ring, of whatever finding.
+    for (const auto& words : marks.words) {
+        if (words.text.find_first_not_of("0123456789") != std::string::npos) continue;
+        const Box box = boxOf(marks, words);
+        for (std::size_t n = bare.lines.size(); n < marks.lines.size(); ++n)
+            EXPECT_FALSE(glm::all(glm::greaterThan(glm::dvec2(marks.lines[n].from), box.low)) &&
+                         glm::all(glm::lessThan(glm::dvec2(marks.lines[n].from), box.high)))
+                << words.text;
+    }
     // Each ring closes around its place.
     std::vector<pictures::Marks::Line> rings(
         marks.lines.begin() + std::ptrdiff_t(bare.lines.size()), marks.lines.end());

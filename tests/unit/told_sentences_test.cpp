@@ -1,6 +1,7 @@
 // What the window translates of a server's sentences, and that the programs still tell them so.
 #include "window/told_sentences.h"
 
+#include "core/colon_record.h"
 #include "core/scan_coarseness.h"
 #include "core/slice_steps.h"
 #include "core/text_file.h"
@@ -10,6 +11,7 @@
 #include <QRegularExpression>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -28,9 +30,11 @@ QString literalsOfSources() {
     for (const auto& entry :
          fs::recursive_directory_iterator(fs::path(std::getenv("HAUSTRA_SOURCE")) / "processing"))
         if (entry.path().extension() == ".cpp") all += readTextFile(entry.path()).value() + "\n";
+    all += readTextFile(fs::path(std::getenv("HAUSTRA_SOURCE")) / "server/cli/cad_command.cpp")
+               .value();
     QString text = QString::fromStdString(all);
     text.replace(QRegularExpression(QStringLiteral("\"\\s*\"")), QString());
-    text.replace(QRegularExpression(QStringLiteral("%(?:\\.\\d)?(?:zu|[dfgs])")),
+    text.replace(QRegularExpression(QStringLiteral("%(?:\\.\\d)?(?:zu|[dfgs])|\\{\\}")),
                  QStringLiteral("\1"));
     return text.replace(QStringLiteral("%%"), QStringLiteral("%"));
 }
@@ -93,8 +97,12 @@ TEST_F(ToldSentences, AreGermanWithTheirNumbers) {
         QString told = sentence,
                 german = QCoreApplication::translate("ToldSentences", sentence.toUtf8());
         EXPECT_NE(german, sentence) << sentence.toStdString();
-        for (auto found = placeholder.globalMatch(sentence); found.hasNext();)
-            EXPECT_EQ(german.count(found.next().captured()), 1) << sentence.toStdString();
+        int number = 0;
+        for (auto found = placeholder.globalMatch(sentence); found.hasNext();) {
+            const QString captured = found.next().captured();
+            EXPECT_EQ(captured, QStringLiteral("%%1").arg(++number)) << sentence.toStdString();
+            EXPECT_EQ(german.count(captured), 1) << sentence.toStdString();
+        }
         told.replace(placeholder, QStringLiteral("7.5"));
         german.replace(placeholder, QStringLiteral("7,5"));
         EXPECT_EQ(translatedSentence(told).toStdString(), german.toStdString());
@@ -126,19 +134,35 @@ TEST_F(ToldSentences, KeepPlacesAndTranslateWords) {
     EXPECT_EQ(translated("what looks like a thin wall in the splenic flexure was taken for open "
                          "lumen, at (80, -34, 322) mm, (1, 2, 3) mm and elsewhere")
                   .toStdString(),
-              "linke Flexur: Was wie eine dünne Wand aussieht, wurde für offenes Lumen gehalten, "
+              "Linke Flexur: Was wie eine dünne Wand aussieht, wurde für offenes Lumen gehalten, "
               "bei (80, -34, 322) mm, (1, 2, 3) mm und anderswo");
     EXPECT_EQ(translated("findings 1, 2 and 3, from 465 mm on, lie rim to rim, 36 mm wide in all: "
                          "they may be lobes of one mass")
                   .toStdString(),
               "Die Befunde 1, 2 und 3, ab 465 mm, liegen Rand an Rand, zusammen 36 mm breit: Es "
               "können Lappen einer einzigen Raumforderung sein");
-    EXPECT_EQ(
-        translated("the course is right with no more than 32 %; gravest: a loop may lie in "
-                   "the 62 mm that were crossed from the sigmoid on")
-            .toStdString(),
-        "Der Verlauf stimmt mit höchstens 32 %; am schwersten wiegt: Sigma: In den 62 mm, die "
-        "überbrückt wurden, kann eine Schlinge liegen");
+    EXPECT_EQ(translated("the course is right with no more than 32 %; gravest: a loop may lie in "
+                         "the 62 mm that were crossed from the sigmoid on")
+                  .toStdString(),
+              "Der Verlauf stimmt mit einer Wahrscheinlichkeit von höchstens 32 %; am schwersten "
+              "wiegt: Sigma: In den 62 mm, die überbrückt wurden, kann eine Schlinge liegen");
+}
+
+TEST_F(ToldSentences, KnowTheWordsThatStandInThem) {
+    std::set<std::string> told{"fluid", "on the left side", "on the right side"};
+    for (std::size_t part = 0; part < colonParts; ++part)
+        told.insert(toString(ColonPart(part)));
+    for (const BodyContent content : {BodyContent::gas, BodyContent::tagged, BodyContent::untagged})
+        told.insert(toString(content));
+    for (const auto position : {PatientPosition::supine, PatientPosition::prone,
+                                PatientPosition::leftDecubitus, PatientPosition::rightDecubitus})
+        told.insert(toString(position));
+    std::set<std::string> known;
+    for (const QString& word : knownWords()) {
+        known.insert(word.toStdString());
+        EXPECT_NE(QCoreApplication::translate("ToldSentences", word.toUtf8()), word);
+    }
+    EXPECT_EQ(known, told);
 }
 
 // What a newer server tells, or a hostile one.

@@ -689,7 +689,7 @@
     </message>
     <message>
         <source>%1 mm2 of the wall were not examined: they lie behind fluid without tagging or beside what stands in the lumen, where the wall&apos;s place is known to millimetres only</source>
-        <translation>%1 mm² der Wand wurden nicht untersucht: Sie liegen hinter unmarkierter Flüssigkeit oder neben etwas, das im Lumen steht; dort ist die Lage der Wand nur auf Millimeter bekannt</translation>
+        <translation>%1 mm² der Wand wurden nicht untersucht: Sie liegen hinter unmarkierter Flüssigkeit oder neben etwas, das im Lumen steht; dort ist die Lage der Wand nur auf einige Millimeter genau bekannt</translation>
     </message>
     <message>
         <source>the wall is %1 mm thick all around from %2 to %3 mm: it may be a cancer that leaves a channel, or a segment that is contracted</source>
@@ -705,11 +705,11 @@
     </message>
     <message>
         <source>%1 place that looks like a polyp was taken for tagged residue on the wall: %2 mm from the rectum</source>
-        <translation>%1 Ort, der wie ein Polyp aussieht, wurde für markierten Rest auf der Wand gehalten: %2 mm ab dem Rektum</translation>
+        <translation>%1 Ort, der wie ein Polyp aussieht, wurde für markierte Reste auf der Wand gehalten: %2 mm ab dem Rektum</translation>
     </message>
     <message>
         <source>%1 places that look like polyps were taken for tagged residue on the wall: %2 mm from the rectum</source>
-        <translation>%1 Orte, die wie Polypen aussehen, wurden für markierten Rest auf der Wand gehalten: %2 mm ab dem Rektum</translation>
+        <translation>%1 Orte, die wie Polypen aussehen, wurden für markierte Reste auf der Wand gehalten: %2 mm ab dem Rektum</translation>
     </message>
     <message>
         <source>the tissue behind the wall is less even than where detection has learnt, %1 HU or more after smoothing to 1 mm: by noise, by contrast in its vessels, or by residue of weak tagging</source>
@@ -792,10 +792,6 @@
         <translation>Die Angaben zur Serie der Aufnahme sind beschädigt, sodass niemand weiß, wie dick ihre Schichten sind</translation>
     </message>
     <message>
-        <source>%1 ml are brighter than bone, metal or thick barium: at the height of their streaks walls and fluid may be wrong or missing, at %2</source>
-        <translation>%1 ml sind heller als Knochen, Metall oder dickes Barium: Auf der Höhe ihrer Streifen können Wände und Flüssigkeit falsch sein oder fehlen, bei %2</translation>
-    </message>
-    <message>
         <source>the kernel is sharp: the wall beside gas is up to %1 HU bright, as tagged material is; thin residue on it is not seen, and detection may miss polyps, the more the sharper</source>
         <translation>Der Faltungskern ist scharf: Die Wand neben Gas ist bis zu %1 HU hell, wie markiertes Material; dünne Reste auf ihr sind nicht zu sehen, und die Erkennung kann Polypen übersehen, je schärfer, desto mehr</translation>
     </message>
@@ -813,7 +809,7 @@
     </message>
     <message>
         <source>about %1 mm of the colon have no centerline, up to the %2 at %3</source>
-        <translation>Etwa %1 mm des Kolons haben keine Mittellinie, bis %2 bei %3</translation>
+        <translation>Etwa %1 mm des Kolons haben keine Mittellinie, bis hier: %2, bei %3</translation>
     </message>
     <message>
         <source>%1 % of the wall lies in blind pouches, which the strip shows as dots: the largest, of %2 mm², begins at %3 mm of the centerline. Look at it from within; the course may pass by a part of the colon</source>
@@ -853,23 +849,23 @@
     </message>
     <message>
         <source>%1 ml at the wall of the %2 are as bright as metal, as of a stent, or thick barium: what lies there is not seen, at %3</source>
-        <translation>%2: %1 ml an der Wand sind so hell wie Metall, etwa eines Stents, oder dickes Barium; was dort liegt, ist nicht zu sehen, bei %3</translation>
+        <translation>%2: %1 ml an der Wand sind so hell wie Metall, etwa eines Stents, oder eingedicktes Barium; was dort liegt, ist nicht zu sehen, bei %3</translation>
     </message>
     <message>
         <source>%1 ml of %2 nearest to the %3 lie open to the colon and were taken for small bowel, at %4</source>
-        <translation>%3: %1 ml %2 in der Nähe sind zum Kolon offen und wurden für Dünndarm gehalten, bei %4</translation>
+        <translation>%1 ml %2, am nächsten an: %3, sind zum Kolon offen und wurden für Dünndarm gehalten, bei %4</translation>
     </message>
     <message>
         <source>%1 ml of %2 nearest to the %3, as wide as colon and where it may lie, were taken for other than colon, at %4</source>
-        <translation>%3: %1 ml %2 in der Nähe, so weit wie Kolon und dort, wo es liegen kann, wurden nicht für Kolon gehalten, bei %4</translation>
+        <translation>%1 ml %2, am nächsten an: %3, so weit wie Kolon und dort, wo es liegen kann, wurden nicht für Kolon gehalten, bei %4</translation>
     </message>
     <message>
         <source>%1 ml of %2 nearest to the %3 were taken for other than colon, at %4</source>
-        <translation>%3: %1 ml %2 in der Nähe wurden nicht für Kolon gehalten, bei %4</translation>
+        <translation>%1 ml %2, am nächsten an: %3, wurden nicht für Kolon gehalten, bei %4</translation>
     </message>
     <message>
         <source>%1 ml of gas away from the course were taken for the stomach&apos;s, other bowel&apos;s or free, at %2</source>
-        <translation>%1 ml Gas abseits des Verlaufs wurden für das des Magens, anderen Darms oder für freies gehalten, bei %2</translation>
+        <translation>%1 ml Gas abseits des Verlaufs wurden für Gas des Magens, anderer Darmabschnitte oder für freies Gas gehalten, bei %2</translation>
     </message>
     <message>
         <source>%1 ml in the %2 are as bright as tagged material, which shows no level in this scan; they may be bone, at %3</source>
@@ -909,7 +905,7 @@
     </message>
     <message>
         <source>the course is right with no more than %1 %; gravest: %2</source>
-        <translation>Der Verlauf stimmt mit höchstens %1 %; am schwersten wiegt: %2</translation>
+        <translation>Der Verlauf stimmt mit einer Wahrscheinlichkeit von höchstens %1 %; am schwersten wiegt: %2</translation>
     </message>
     <message>
         <source>the rectum was not found: the colon begins in the %1</source>
@@ -993,7 +989,7 @@
     </message>
     <message>
         <source>%1 small and %2 full-size phantoms made by haustra phantom, and calibrated on %3 small and %4 full-size others, no patient: how probable a place is to be a polyp holds for phantoms, and is no more than an ordering for patients</source>
-        <translation>%1 kleinen und %2 großen Phantomen von „haustra phantom“, kalibriert an %3 kleinen und %4 großen anderen, keinem Patienten: Wie wahrscheinlich ein Ort ein Polyp ist, gilt für Phantome; für Patienten ist es nur eine Reihenfolge</translation>
+        <translation>%1 kleinen Phantomen und %2 in voller Größe, von „haustra phantom“ gemacht, kalibriert an %3 kleinen anderen und %4 in voller Größe, keinem Patienten: Wie wahrscheinlich ein Ort ein Polyp ist, gilt für Phantome; für Patienten ist es nur eine Reihenfolge</translation>
     </message>
     <message>
         <source>rectum</source>
@@ -1075,6 +1071,22 @@
     <message>
         <source> and elsewhere</source>
         <translation> und anderswo</translation>
+    </message>
+    <message>
+        <source>%1 ml are brighter than bone, as metal and thick barium are: at the height of their streaks walls and fluid may be wrong or missing, at %2</source>
+        <translation>%1 ml sind heller als Knochen, wie Metall und eingedicktes Barium: Auf der Höhe ihrer Streifen können Wände und Flüssigkeit falsch sein oder fehlen, bei %2</translation>
+    </message>
+    <message>
+        <source>calibrated on %1 other case</source>
+        <translation>kalibriert an %1 anderen Fall</translation>
+    </message>
+    <message>
+        <source>calibrated on %1 other cases</source>
+        <translation>kalibriert an %1 anderen Fällen</translation>
+    </message>
+    <message>
+        <source>cases that somebody chose</source>
+        <translation>Fällen, die jemand ausgewählt hat</translation>
     </message>
 </context>
 <context>

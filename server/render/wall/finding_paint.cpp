@@ -12,7 +12,6 @@ namespace {
 
 constexpr int cellSide = 8;  // voxels
 // Far from the wall's red for those who tell red from green, and by its lightness for others.
-constexpr glm::u8vec3 findingColor(0, 230, 110), candidateColor(205, 160, 255);
 constexpr int findingCover = 165, candidateCover = 120;
 
 }  // namespace

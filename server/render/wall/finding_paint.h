@@ -65,6 +65,8 @@ enum class FindingShade : std::uint8_t {
     candidate,  ///< below the operating point: weaker
     finding,
 };
+/// What the wall is mixed with.
+inline constexpr glm::u8vec3 findingColor(0, 230, 110), candidateColor(205, 160, 255);
 /// `shades`: of each finding. Something of the wall's own colour is left.
 std::vector<TintedPixel> colorFindings(std::span<const FindingPixel> pixels,
                                        std::span<const FindingShade> shades);
