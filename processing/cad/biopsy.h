@@ -42,7 +42,7 @@ private:
 struct BiopsyRay {
     glm::vec3 color{0.0f};  ///< linear light, over black
     float opacity = 0.0f;
-    float tissueMm = 0.0f;  ///< until the lumen began again; the whole way where it did not
+    float tissueMm = 0.0f;  ///< until the ray ended; the whole way where nothing ended it
     bool reenters = false;  ///< the lumen began again
     /// The greatest within peakMm of where it begins: a wall thinner than the scan resolves has
     /// less than its tissue's, a thickened one all of it.
@@ -60,8 +60,8 @@ struct BiopsyScan {
 enum class RayEnd { opaque, lumen };
 
 /// Front to back from `startMm` on the wall along the unit vector `intoWall`. It ends where it
-/// would enter the lumen again after it has been in tissue, or, where no more is wanted, where it
-/// is opaque.
+/// would enter the lumen again after it has been in tissue, or has met none within 1.5 mm, or,
+/// where no more is wanted, where it is opaque.
 BiopsyRay castBiopsyRay(const BiopsyScan& scan, const BiopsyTable& table, glm::dvec3 startMm,
                         glm::dvec3 intoWall, RayEnd end = RayEnd::lumen);
 

@@ -70,9 +70,10 @@ std::string candidateTable(const std::vector<Candidate>& candidates) {
 Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const std::string& place) {
     try {
         const auto json = nlohmann::json::parse(text);
-        if (json.at("haustra_cad_candidates").get<int>() != modelVersion ||
+        if (integer(json.at("haustra_cad_candidates")) != modelVersion ||
             json.at("features") != nlohmann::json(featureNames))
             return fail(ErrorKind::unsupported, "the candidates are of other features", place);
+        if (!json.at("candidates").is_array()) throw std::invalid_argument("they are no list");
         std::vector<Candidate> candidates;
         for (const auto& row : json.at("candidates")) {
             if (row.size() != ownNumbers + featureNames.size())
@@ -81,6 +82,8 @@ Result<std::vector<Candidate>> candidatesOfTable(std::string_view text, const st
             Lesion& lesion = candidate.lesion;
             lesion.centerMm = {row[0].get<double>(), row[1].get<double>(), row[2].get<double>()};
             lesion.diameter.mm = row[3], lesion.areaMm2 = row[4];
+            if (!(lesion.diameter.mm >= 0.0 && lesion.areaMm2 >= 0.0))
+                throw std::invalid_argument("a candidate has no size");
             lesion.patch.by = generatorOf(row[5]);
             candidate.levelOf = levelOf(row[6], candidates, lesion.patch.by);
             for (std::size_t n = 0; n < featureNames.size(); ++n)

@@ -27,7 +27,7 @@ struct ShapeLimits {
     double growCurvature = 0.012;  ///< 1/mm: its samples have at least this k2
     double seedShapeIndex = 0.8;   ///< between ridge and cap
     double leastMm2 = 6.0;         ///< smaller patches are noise; a polyp of 4 mm has 15 mm²
-    double mostMm2 = 4000.0;       ///< larger ones are no polyps
+    double mostMm2 = 4000.0;       ///< larger ones, holes apart, are no polyps
     /// 1/mm: the lower and the higher limit of a patch's other levels (otherLevels).
     double wideCurvature = 0.006, narrowCurvature = 0.024;
 };

@@ -151,7 +151,7 @@ struct Measures {
     const ResidueFilms& films;
     std::span<const float> textureDistances;
     int threads;
-    const Progress& progress;
+    Progress progress;
 };
 
 // Adds those of the patches that are bodies, residue apart; `levelOf` of each, or of none.
@@ -318,13 +318,19 @@ std::vector<Candidate> findCandidates(const PreparedColon& colon, const WallEvid
         [&] { made[1] = patchesByShape(evidence, Generator::shape, some); },
         [&] { made[2] = patchesByShape(evidence, Generator::broadShape, some); },
         [&] { films.emplace(colon, evidence); });
-    const Measures with{colon, evidence, *films, distances, options.threads, options.progress};
+    // Other levels take about as long as the candidates.
+    const auto measures = [&](double from) {
+        Progress half;
+        if (options.progress)
+            half = [&options, from](double share) { options.progress(from + 0.5 * share); };
+        return Measures{colon, evidence, *films, distances, options.threads, half};
+    };
     std::vector<Patch> patches;
     for (auto& each : made)
         std::ranges::move(each, std::back_inserter(patches));
     std::vector<Candidate> candidates;
-    measure(with, std::move(patches), {}, candidates, residue);
-    measureOtherLevels(with, model, candidates);
+    measure(measures(0.0), std::move(patches), {}, candidates, residue);
+    measureOtherLevels(measures(0.5), model, candidates);
     return candidates;
 }
 

@@ -1,5 +1,7 @@
 #include "cad/evaluate.h"
 
+#include "core/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -245,10 +247,8 @@ std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases,
             drawn[p].push_back(points[p].second);
     }
     for (std::size_t p = 0; p < curve.size() && !drawn[p].empty(); ++p) {
-        std::sort(drawn[p].begin(), drawn[p].end());
-        const double last = double(drawn[p].size() - 1);
-        curve[p].low = drawn[p][std::size_t(0.025 * last)];
-        curve[p].high = drawn[p][std::size_t(0.975 * last)];
+        curve[p].low = quantileOf(drawn[p], 0.025);
+        curve[p].high = quantileOf(drawn[p], 0.975);
     }
     return curve;
 }

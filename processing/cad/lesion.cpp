@@ -252,10 +252,11 @@ std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid) {
         const auto edge = [](glm::dvec3 p, glm::dvec3 q, double y, double z) {
             return (q.y - p.y) * (z - p.z) - (q.z - p.z) * (y - p.y);
         };
-        for (int k = int(std::ceil(lo.z)); k <= int(std::floor(hi.z)); ++k) {
-            for (int j = int(std::ceil(lo.y)); j <= int(std::floor(hi.y)); ++j) {
-                // Rows pass a hair beside whole numbers, so that none meets an edge.
-                const double y = j + 1.7e-6, z = k + 2.3e-6;
+        // Rows pass a hair beside whole numbers, so that none meets an edge.
+        constexpr double besideY = 1.7e-6, besideZ = 2.3e-6;
+        for (int k = int(std::ceil(lo.z - besideZ)); k <= int(std::floor(hi.z)); ++k) {
+            for (int j = int(std::ceil(lo.y - besideY)); j <= int(std::floor(hi.y)); ++j) {
+                const double y = j + besideY, z = k + besideZ;
                 const double ea = edge(b, c, y, z), eb = edge(c, a, y, z), ec = edge(a, b, y, z);
                 if (!((ea > 0 && eb > 0 && ec > 0) || (ea < 0 && eb < 0 && ec < 0))) continue;
                 crossings[{k, j}].push_back((ea * a.x + eb * b.x + ec * c.x) / (ea + eb + ec));
@@ -306,11 +307,12 @@ std::optional<Lesion> standUp(const WallEvidence& evidence, Patch patch, const G
 std::set<std::size_t> voxelsBehind(const WallEvidence& evidence,
                                    std::span<const std::uint32_t> samples, const Grid& grid) {
     const double depth = halfVoxelMm(grid);
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     std::set<std::size_t> voxels;
     for (const std::uint32_t v : samples) {
         const glm::dvec3 wall = evidence.samples.mesh.vertices[v],
                          intoWall(evidence.shapes[v].intoWall), beneath = wall + depth * intoWall;
-        const glm::dvec3 at = grid.voxelFromPatientPoint(beneath);
+        const glm::dvec3 at(voxelFromPatient * glm::dvec4(beneath, 1.0));
         const glm::ivec3 low(glm::floor(at));
         double greatest = 0.0;
         std::size_t most = 0;

@@ -75,8 +75,9 @@ private:
 };
 
 /// Numbers the samples within a distance of the patch along the wall: the patch's first, in their
-/// order, then the others from the nearest on. Each one's distance, along the edges of a
-/// breadth-first search: some tenth too long. O(numbered samples).
+/// order, then the others, ring after ring. Each one's distance, along the edges of a breadth-first
+/// search: a tenth too long in the mean, of one in seven a fifth and more, so that some at the rim
+/// are left out. O(numbered samples).
 std::vector<double> widen(const WallSamples& wall, std::span<const std::uint32_t> patch,
                           double byMm, SampleNumbers& numbers);
 
@@ -99,7 +100,8 @@ std::vector<VoxelRun> segmentationOf(const PreparedColon& colon, const WallEvide
 
 /// Voxels of a grid, by their indices.
 std::vector<VoxelRun> runsOf(const std::set<std::size_t>& voxels, const Grid& grid);
-/// Runs of the voxels whose centres lie within a closed mesh (even–odd along i).
+/// Runs of the voxels whose centres, moved by some millionths of a voxel, lie within a closed mesh
+/// (even–odd along i).
 std::vector<VoxelRun> voxelsWithin(const TriMesh& body, const Grid& grid);
 
 }  // namespace haustra::cad

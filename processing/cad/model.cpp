@@ -2,6 +2,7 @@
 
 #include "cad/built_in_models.h"
 #include "cad/places.h"
+#include "core/control_characters.h"
 #include "core/printed_text.h"
 
 #include <algorithm>
@@ -108,15 +109,18 @@ TextureModel textureIn(const ModelJson& json) {
 }  // namespace
 
 bool isModelLine(std::string_view text, std::size_t longest) {
-    if (text.size() > longest ||
-        std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-        return false;
+    if (text.size() > longest) return false;
     try {
         ModelJson(std::string(text)).dump();
-        return true;
     } catch (const ModelJson::type_error&) {
         return false;  // no UTF-8
     }
+    for (std::size_t at = 0; at < text.size();) {
+        const auto [code, length] = characterAt(text, at);
+        if (isControlCharacter(code)) return false;
+        at += length;
+    }
+    return true;
 }
 
 std::string textureText(const TextureModel& texture) {

@@ -62,8 +62,9 @@ struct CadModel {
     double placeProbability(double score) const;
 };
 
-/// JSON that modelOfText reads back; single-precision numbers with seven significant digits, or the
-/// networks' weights with five, so that they come back as neighbours. Ends with a new line.
+/// JSON that modelOfText reads back; single-precision numbers with seven significant digits, so
+/// that they come back as neighbours, the values of normal scores with nine, the networks' weights
+/// and scores with five. Ends with a new line.
 std::string modelText(const CadModel& model);
 /// Fails (badInput) where the text is no model; (unsupported) where it is of another version or of
 /// other features than this program has.

@@ -244,7 +244,8 @@ Result<void> checkNetworks(const NeuralNetworks& networks, int features) {
     for (const NormalScore& score : networks.scores) {
         if (score.values.empty() || score.values.size() != score.scores.size() ||
             !finite(score.values) || !bounded(score.scores) ||
-            std::ranges::adjacent_find(score.values, std::greater_equal()) != score.values.end())
+            std::ranges::adjacent_find(score.values, std::greater_equal()) != score.values.end() ||
+            !std::ranges::is_sorted(score.scores))
             return refuse("a feature's scores do not ascend");
     }
     for (const NeuralNetwork& network : networks.networks) {

@@ -4,6 +4,7 @@
 #include "cad/wall_frames.h"
 #include "core/parallel.h"
 #include "core/printed_text.h"
+#include "core/quantile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +19,9 @@ namespace {
 constexpr std::size_t wallVectors = 6000, polypVectors = 4000;  // of one case, about
 
 std::pair<double, double> middleRange(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
     // All but the outermost fortieth on either side.
-    const auto at = [&](double share) {
-        return values[std::size_t(share * double(values.size() - 1))];
-    };
-    return {at(0.025), at(0.975)};
+    const double low = quantileOf(values, 0.025);
+    return {low, quantileOf(values, 0.975)};
 }
 
 // What has learnt from the same cases.

@@ -1,5 +1,6 @@
 #include "cad/truth.h"
 
+#include "cad/model.h"
 #include "core/printed_text.h"
 
 #include <algorithm>
@@ -28,21 +29,44 @@ double diameterOfTruth(double mm) {
     return mm;
 }
 
+double shareOfTruth(const nlohmann::json& json, const char* name) {
+    const double share = json.value(name, 0.0);
+    if (!(share >= 0.0 && share <= 1.0))
+        throw std::invalid_argument(std::string(name) + " is not 0 to 1");
+    return share;
+}
+
+double lengthOfTruth(const nlohmann::json& json, const char* name) {
+    const double mm = json.value(name, 0.0);
+    if (!(mm >= 0.0 && mm <= largestMm))
+        throw std::invalid_argument(std::string(name) + " is not 0 to 300");
+    return mm;
+}
+
+// It is printed.
+std::string kindOfTruth(const nlohmann::json& json) {
+    constexpr std::size_t longest = 40;
+    const std::string kind = json.value("kind", "");
+    if (!isModelLine(kind, longest))
+        throw std::invalid_argument("its kind is no line of 40 bytes at most");
+    return kind;
+}
+
 TrueLesion lesionOfTruth(const nlohmann::json& read) {
     if (!read.is_object()) throw std::invalid_argument("it is no object");
     TrueLesion lesion;
     lesion.positionMm = placeOfTruth(read.at("position_mm"));
     lesion.wallMm = read.contains("wall_mm") ? placeOfTruth(read.at("wall_mm")) : lesion.positionMm;
     lesion.diameterMm = diameterOfTruth(read.at("diameter_mm"));
-    lesion.heightMm = read.value("height_mm", 0.0);
-    lesion.kind = read.value("kind", "");
+    lesion.heightMm = lengthOfTruth(read, "height_mm");
+    lesion.kind = kindOfTruth(read);
     lesion.neoplastic = read.value("neoplastic", !lesion.hyperplastic());
     if (lesion.neoplastic && lesion.hyperplastic())
         throw std::invalid_argument("a hyperplastic one is called neoplastic");
     if (read.contains("core_hu")) lesion.coreHu = read.at("core_hu").get<double>();
-    lesion.submergedShare = read.value("submerged_share", 0.0);
-    lesion.untaggedShare = read.value("untagged_share", 0.0);
-    lesion.filmMm = read.value("film_mm", 0.0);
+    lesion.submergedShare = shareOfTruth(read, "submerged_share");
+    lesion.untaggedShare = shareOfTruth(read, "untagged_share");
+    lesion.filmMm = lengthOfTruth(read, "film_mm");
     return lesion;
 }
 

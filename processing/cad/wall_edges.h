@@ -14,7 +14,7 @@ struct EdgeLine {
     glm::dvec3 surfaceMm{0.0}, intoWall{0.0};
     glm::dvec3 at(double mm) const { return surfaceMm + mm * intoWall; }
 };
-/// Of some 20,000 places; none where too little of the wall is dry to tell.
+/// Of 20,000 to 40,000 places; none where too little of the wall is dry to tell.
 std::vector<EdgeLine> edgeLines(const WallEvidence& evidence);
 
 /// Depths behind the surface at which an edge's peak is looked for: 0.25 to 3.75 mm.

@@ -38,7 +38,7 @@ struct WallStatistics {
     double wallHu = 0.0;  ///< of the wall's tissue
     double fatHu = 0.0;   ///< of fat around it
     /// Standard deviation in the smoothed scan. Too low by a tenth at 30 HU and two fifths at 60,
-    /// as only places within 60 HU of soft tissue are counted; 0 where there are not a hundred.
+    /// as only places within 60 HU of soft tissue are counted; 0 where those are a hundred at most.
     double noiseHu = 0.0;
 };
 
@@ -89,7 +89,8 @@ SmoothScan smoothedAround(const PreparedColon& colon, double sigmaMm, int thread
                           double reachMm = biopsyReachMm);
 
 /// Wall and fat as the scan's tissue model has them, and the noise of `smooth` (at shapeSigmaMm),
-/// by second differences along lines into the tissue beneath some 40,000 of the surface's vertices.
+/// by second differences along lines into the tissue beneath 40,000 to 80,000 of the surface's
+/// vertices, where it has as many.
 WallStatistics wallStatistics(const PreparedColon& colon, const SmoothScan& smooth);
 
 /// `ofSurface`: evidence of the same surface and centerline in another scan, whole. It gives its

@@ -52,6 +52,20 @@ std::vector<cad::Candidate> bodies(const BallColon& ball, int threads = 2) {
     return kept;
 }
 
+TEST(Detect, ProgressNeverGoesBack) {
+    const auto model = cad::modelOfText(cad::builtInModelText());
+    ASSERT_TRUE(model);
+    const BallColon ball;
+    std::vector<double> told;
+    cad::DetectOptions options = shapeAlone();
+    options.progress = [&](double share) { told.push_back(share); };
+    (void)cad::detectPolyps(ball.colon(), *model, options);
+    ASSERT_GT(told.size(), 3u);
+    EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+    EXPECT_GE(told.front(), 0.0);
+    EXPECT_EQ(told.back(), 1.0);
+}
+
 TEST(Detect, BodiesOnTheWallAreFoundWithTheirSize) {
     const auto found = bodies(BallColon());
     ASSERT_EQ(found.size(), bumps.size());

@@ -770,6 +770,39 @@ TEST(Lesion, VoxelsWithinABodyAreThoseWhoseCentresItHolds) {
     EXPECT_TRUE(cad::voxelsWithin(body, grid).empty());
 }
 
+TEST(Lesion, VoxelsWithinABoxAreAllThereWhereverItsCornersLie) {
+    // One face is cut in two, a hair from a plane of voxels.
+    const Grid grid = axisAlignedGrid({8, 8, 8}, glm::dvec3(1.0));
+    for (const int axis : {1, 2})
+        for (const double off : {-3e-6, -1e-9, 0.0, 1e-9, 1e-6, 2e-6, 3e-6}) {
+            const double low = 1.5, high = 5.5, cut = 3.0 + off;
+            TriMesh box;
+            for (int corner = 0; corner < 8; ++corner)
+                box.vertices.push_back(
+                    {corner & 1 ? high : low, corner & 2 ? high : low, corner & 4 ? high : low});
+            const auto side = [&](int a, int b, int c, int d) {
+                box.triangles.push_back({a, b, c}), box.triangles.push_back({a, c, d});
+            };
+            side(1, 3, 7, 5), side(0, 1, 5, 4), side(2, 6, 7, 3), side(0, 2, 3, 1),
+                side(4, 5, 7, 6);
+            // The face at low x, across which the cut runs.
+            const int first = int(box.vertices.size());
+            for (const bool far : {false, true}) {
+                glm::dvec3 at(low, far ? high : low, far ? high : low);
+                at[axis] = cut;
+                box.vertices.push_back(at);
+            }
+            if (axis == 2)
+                side(0, first, first + 1, 2), side(first, 4, 6, first + 1);
+            else
+                side(0, 4, first + 1, first), side(first, first + 1, 6, 2);
+            int voxels = 0;
+            for (const VoxelRun& run : cad::voxelsWithin(box, grid))
+                voxels += run.count;
+            EXPECT_EQ(voxels, 64) << axis << ' ' << off;
+        }
+}
+
 TEST(Lesion, ADiameterIsTheGreatestDistance) {
     cad::WallSamples wall;
     std::vector<std::uint32_t> all;

@@ -7,6 +7,7 @@
 #include "cad/train.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -260,29 +261,39 @@ TEST(Model, WhatIsNoneIsRefused) {
     ASSERT_TRUE(cad::textureOfText(cad::textureText(none), "t.json"));
     none.polyp.clear(), none.components.clear();
     EXPECT_FALSE(cad::textureOfText(cad::textureText(none), "t.json"));
-    for (const std::string& text :
-         {std::string(),
-          std::string("[]"),
-          sound.substr(0, sound.size() - 40),
-          with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
-          with("diameter_mm", "weight_kg"),
-          withTree("[[99,0.5,2],1.0,-1.0]"),
-          withTree("[[0.9,0.5,2],1.0,-1.0]"),
-          withTree("[[0,0.5,1],1.0,-1.0]"),
-          withTree("[[0,0.5,0],1.0,-1.0]"),
-          with("\"polyp\":[", "\"polyp\":[0,"),
-          with("\"operating_point\": ", "\"operating_point\": 2"),
-          with("\"calibration\": [", "\"calibration\": [0.5,-"),
-          with("\"place_calibration\": [", "\"place_calibration\": [0.5,-"),
-          with("\"networks\": [", "\"networks\": [[],"),
-          with("\"threshold\":", "\"threshold\":-1,\"x\":"),
-          with(mean + meanOf, mean + "1e30"),
-          with(inputs, inputs + ".5"),
-          with("\"name\": \"", "\"name\": \"a\\nwarning: b"),
-          with("\"name\": \"", "\"name\": \"" + std::string(300, 'a')),
-          with("\"scores\": [", "\"scores\": [[[1.0],[1.0]],"),
-          with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
+    for (const std::string& text : {std::string(),
+                                    std::string("[]"),
+                                    sound.substr(0, sound.size() - 40),
+                                    with("\"haustra_cad_model\": ", "\"haustra_cad_model\": 9"),
+                                    with("diameter_mm", "weight_kg"),
+                                    withTree("[[99,0.5,2],1.0,-1.0]"),
+                                    withTree("[[0.9,0.5,2],1.0,-1.0]"),
+                                    withTree("[[0,0.5,1],1.0,-1.0]"),
+                                    withTree("[[0,0.5,0],1.0,-1.0]"),
+                                    with("\"polyp\":[", "\"polyp\":[0,"),
+                                    with("\"operating_point\": ", "\"operating_point\": 2"),
+                                    with("\"networks\": [", "\"networks\": [[],"),
+                                    with("\"threshold\":", "\"threshold\":-1,\"x\":"),
+                                    with(mean + meanOf, mean + "1e30"),
+                                    with(inputs, inputs + ".5"),
+                                    with("\"name\": \"", "\"name\": \"a\\nwarning: b"),
+                                    with("\"name\": \"", "\"name\": \"a\u009b31m"),
+                                    with("\"name\": \"", "\"name\": \"a\u2028b"),
+                                    with("\"name\": \"", "\"name\": \"" + std::string(300, 'a')),
+                                    with("\"scores\": [", "\"scores\": [[[1.0],[1.0]],"),
+                                    with("\"training_scans\": ", "\"training_scans\": 7, \"x\": ")})
         EXPECT_FALSE(cad::modelOfText(text, "m.json")) << text.substr(0, 60);
+    // Higher scores are more probable, and greater values have higher scores.
+    for (const auto& spoil : std::vector<std::function<void(cad::CadModel&)>>{
+             [](cad::CadModel& model) { model.calibrationB = -1.5; },
+             [](cad::CadModel& model) { model.placeB = -1.0; },
+             [](cad::CadModel& model) {
+                 model.networks.scores.front() = {{0.0f, 1.0f}, {1.0f, 0.0f}};
+             }}) {
+        cad::CadModel falling = smallModel();
+        spoil(falling);
+        EXPECT_FALSE(cad::modelOfText(cad::modelText(falling), "m.json"));
+    }
     // A version that no program has is no other program's.
     for (const char* version : {"1e99", "1.5", "\"1\"", "null"}) {
         const auto refused =
@@ -582,6 +593,20 @@ TEST(Truth, AHyperplasticGrowthIsNoPolypUnlessSomebodySaysTwoThings) {
     EXPECT_FALSE(lesion(R"(,"kind":"hyperplastic","neoplastic":true)"));
 }
 
+TEST(Truth, WhatIsPrintedOrCountedIsSound) {
+    const auto takes = [](const std::string& more) {
+        return cad::truthOfJson(
+                   R"({"findings":[{"position_mm":[0,0,0],"diameter_mm":8,)" + more + "}]}",
+                   "truth.json")
+            .has_value();
+    };
+    EXPECT_TRUE(takes(R"("kind":"flat","untagged_share":1.0,"submerged_share":0,"height_mm":2.5)"));
+    for (const char* bad : {R"("kind":"flat\n\u001b[31mall  99/99")", R"("untagged_share":40)",
+                            R"("submerged_share":-0.1)", R"("height_mm":-3)",
+                            R"("height_mm":1e300)", R"("film_mm":301)"})
+        EXPECT_FALSE(takes(bad)) << bad;
+}
+
 TEST(FormerFluid, IsAsFarAsItsNearestPlace) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> within(-40.0, 40.0);
@@ -779,6 +804,18 @@ TEST(CandidateTable, RefusesWhatIsNone) {
     std::string other = text;
     other.replace(other.find("diameter_mm"), 11, "weight_kg__");
     EXPECT_TRUE(refused(other));
+    // Of a version that no program has; no list; a size below none.
+    const auto changed = [&](const std::string& from, const std::string& to) {
+        std::string bad = text;
+        return bad.replace(bad.find(from), from.size(), to);
+    };
+    const std::string version = "candidates\": " + std::to_string(cad::modelVersion);
+    for (const char* more : {".9", "e300"})
+        EXPECT_TRUE(refused(changed(version, version + more)));
+    EXPECT_TRUE(refused(text.substr(0, text.rfind("[\n[")) + "null}"));
+    cad::Candidate negative;
+    negative.lesion.diameter.mm = -1.0;
+    EXPECT_TRUE(refused(cad::candidateTable({negative})));
     std::string shorter = text;
     shorter.replace(shorter.rfind(",0]"), 3, "]");
     EXPECT_TRUE(refused(shorter));
