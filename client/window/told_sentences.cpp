@@ -29,6 +29,11 @@ constexpr const char* sentences[] = {
     QT_TRANSLATE_NOOP("ToldSentences",
                       "the wall is %1 mm thick all around from %2 to %3 mm: it may be a segment "
                       "that is inflamed or contracted, or a long tumour"),
+    QT_TRANSLATE_NOOP(
+        "ToldSentences",
+        "on %1 mm of the colon, from %2 mm on, nothing is told of how thick the wall is: %3 HU at "
+        "most behind it are fluid's, around the colon or in a wall that is swollen"),
+    QT_TRANSLATE_NOOP("ToldSentences", "polyps may be missed: %1"),
     QT_TRANSLATE_NOOP("ToldSentences",
                       "findings %1, from %2 mm on, lie rim to rim, %3 mm wide in all: they may be "
                       "lobes of one mass"),
@@ -126,6 +131,9 @@ constexpr const char* sentences[] = {
         "%1 ml of air in the body are open to the room's, as through a stoma, and were taken for "
         "it: if they are bowel's, set up a wall (--cut X,Y,Z,R) between the skin and %2"),
     QT_TRANSLATE_NOOP("ToldSentences",
+                      "an opening of %1 mm2 was kept, as without it the colon is parted: a polyp "
+                      "or a fold may stand in the way, or two loops touch, at %2"),
+    QT_TRANSLATE_NOOP("ToldSentences",
                       "about %1 mm of the colon have no centerline, up to the %2 at %3"),
     QT_TRANSLATE_NOOP("ToldSentences",
                       "%1 % of the wall lies in blind pouches, which the strip shows as dots: the "
@@ -204,6 +212,8 @@ constexpr const char* sentences[] = {
     QT_TRANSLATE_NOOP("ToldSentences", "the course may end before the cecum"),
     QT_TRANSLATE_NOOP("ToldSentences", "the %1 goes on beyond the edge of the scan"),
     QT_TRANSLATE_NOOP("ToldSentences", "%1 % of the mask lie in soft tissue"),
+    QT_TRANSLATE_NOOP("ToldSentences",
+                      "%1 ml of the colon are joined to nothing, and were left out"),
     QT_TRANSLATE_NOOP(
         "ToldSentences",
         "%1 ml of %2 as wide as colon, and where it may lie, were left out near the %3"),

@@ -86,6 +86,14 @@ std::optional<double> thicknessAllAround(std::span<const Rays> sections, std::si
     return medianOf(judged);
 }
 
+// Of the smoothed scan, so deep behind a sample.
+double huBehind(const WallEvidence& evidence, std::uint32_t sample, double mm) {
+    const glm::dvec3 at =
+        evidence.samples.mesh.vertices[sample] + mm * glm::dvec3(evidence.shapes[sample].intoWall);
+    return evidence.smooth->linear(
+        glm::vec3(evidence.smooth->voxelFromPatient() * glm::dvec4(at, 1.0)));
+}
+
 double leastTissueHu(const WallEvidence& evidence) {
     return 0.5 * (evidence.statistics.wallHu + evidence.statistics.fatHu);
 }
@@ -98,6 +106,7 @@ std::vector<VoxelRun> tissueOf(const AnnularWall& wall, const PreparedColon& col
     // places beside it along.
     constexpr double besideMm = 0.5;
     const Grid& grid = colon.cleansed.grid();
+    const glm::dmat4 voxelFromPatient = grid.voxelFromPatient();
     std::set<std::size_t> voxels = voxelsBehind(evidence, wall.samples, grid);
     for (const std::uint32_t sample : wall.samples) {
         const double mm = std::min(deepestMm, wallThicknessMm(evidence, sample).value_or(0.0));
@@ -109,7 +118,8 @@ std::vector<VoxelRun> tissueOf(const AnnularWall& wall, const PreparedColon& col
         for (double depth = stepMm; depth < mm; depth += stepMm)
             for (const glm::dvec3& beside : {across, -across, other, -other}) {
                 const glm::dvec3 at = from + depth * into + besideMm * beside;
-                const glm::ivec3 voxel(glm::floor(grid.voxelFromPatientPoint(at) + 0.5));
+                const glm::ivec3 voxel(
+                    glm::floor(glm::dvec3(voxelFromPatient * glm::dvec4(at, 1.0)) + 0.5));
                 if (grid.contains(voxel) && colon.cleansed.at(voxel) >= colon.tissue.airBelowHu)
                     voxels.insert(grid.index(voxel));
             }
@@ -185,7 +195,20 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
     for (std::uint32_t sample = 0; sample < count; ++sample)
         if (const std::size_t wall = wallOf[places.section(sample)]; wall < walls.size())
             walls[wall].samples.push_back(sample);
+    for (AnnularWall& wall : walls) {
+        std::vector<double> hus;
+        for (const std::uint32_t sample : wall.samples)
+            if (const double mm = thickness[sample / stride];
+                sample % stride == 0 && mm >= thickMm && mm != unbounded)
+                hus.push_back(huBehind(evidence, sample, 0.5 * mm));
+        wall.middleHu = hus.empty() ? evidence.statistics.wallHu : medianOf(hus);
+    }
     return walls;
+}
+
+bool isFluid(const AnnularWall& wall, const WallStatistics& statistics) {
+    constexpr double waterHu = 0.0;
+    return wall.middleHu < 0.5 * (waterHu + statistics.wallHu);
 }
 
 Finding findingOf(const AnnularWall& wall, const PreparedColon& colon, const WallEvidence& evidence,

@@ -20,6 +20,7 @@ inline constexpr double annularScore = 0.9;
 struct AnnularWall {
     double fromMm = 0.0, toMm = 0.0;     ///< arcs along the centerline
     double thicknessMm = 0.0;            ///< of its wall, median
+    double middleHu = 0.0;               ///< median of the smoothed scan half-way through it
     std::vector<std::uint32_t> samples;  ///< its wall, ascending
     double lengthMm() const { return toMm - fromMm; }
 };
@@ -39,6 +40,10 @@ std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_
 /// for any number of threads. O(samples).
 std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
                                       int threads);
+
+/// Whether what is thick is darker than half-way from water to the wall's tissue: fluid around the
+/// colon (ascites has up to some 20 HU), or a wall that is swollen with it, and no tumour.
+bool isFluid(const AnnularWall& wall, const WallStatistics& statistics);
 
 /// Longer ones are segments that are inflamed or contracted rather than a tumour: of cancers that
 /// thicken the wall 87 % are shorter than 50 mm (Lee et al., Korean J Gastroenterol 2012; 60: 300).

@@ -250,11 +250,19 @@ void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
             untaggedMm2));
 }
 
-// Those that may be a tumour are added to the findings, longer ones told by a warning alone.
+// Those that may be a tumour are added to the findings, longer ones told by a warning alone, and
+// all in which there is fluid by one.
 void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, int threads,
                       Findings& findings, std::vector<Finding>& made) {
     const auto segments = segmentsAlong(colon.centerline, colon.pieces);
+    std::vector<AnnularWall> fluid;
+    double fluidMm = 0.0, fluidHu = 0.0;
     for (const AnnularWall& wall : annularWalls(colon, evidence, threads)) {
+        if (isFluid(wall, evidence.statistics)) {
+            fluid.push_back(wall);
+            fluidMm += wall.lengthMm(), fluidHu = std::max(fluidHu, wall.middleHu);
+            continue;
+        }
         const bool tumour = wall.lengthMm() <= longestTumourMm;
         findings.warnings.push_back(printed(
             "the wall is %.0f mm thick all around from %.0f to %.0f mm: %s", wall.thicknessMm,
@@ -266,6 +274,11 @@ void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, 
         // Whatever point a model operates at: it has not weighed this.
         made.back().score = std::max(annularScore, findings.operatingPoint);
     }
+    if (!fluid.empty())
+        findings.warnings.push_back(printed(
+            "on %.0f mm of the colon, from %.0f mm on, nothing is told of how thick the wall is: "
+            "%.0f HU at most behind it are fluid's, around the colon or in a wall that is swollen",
+            fluidMm, fluid.front().fromMm, fluidHu));
 }
 
 void warnOfMasses(Findings& findings) {

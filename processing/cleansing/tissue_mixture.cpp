@@ -93,9 +93,19 @@ Result<TissueModel> fitTissueModel(const CtScan& scan, int threads, const Tissue
     // Padding (−1024 and less) is not counted; a scan padded with exactly −1024 still shows bowel
     // gas.
     if (air < 1e-4 * std::max(all, 1.0)) {
+        const auto isAny = [](double count) { return count > 0.0; };
+        const int low = lowestHu + int(std::ranges::find_if(histogram, isAny) - histogram.begin()),
+                  high = lowestHu + int(histogram.size()) - 1 -
+                         int(std::find_if(histogram.rbegin(), histogram.rend(), isAny) -
+                             histogram.rbegin());
         return fail(
             ErrorKind::noResult,
-            "the scan holds no air (nothing below " + std::to_string(airRange.toHu) + " HU)",
+            "the scan holds no air (nothing below " + std::to_string(airRange.toHu) + " HU; its " +
+                (all > 0.0
+                     ? "values go from " + std::to_string(low) + " to " + std::to_string(high) +
+                           ": where they are no HU, as stored values without their rescaling "
+                           "or a window's greys, export the series anew)"
+                     : std::string("values are all padding's)")),
             "tissue model");
     }
     if (soft < 1e-3 * std::max(all, 1.0)) {

@@ -131,7 +131,8 @@ struct ColonRecord {
     std::vector<UntaggedPool> untaggedPools;  ///< not in the lumen; the largest surface first
     std::vector<CutEnd> cutEnds;              ///< the largest first
     double maskInSoftTissue = 0.0;            ///< share of a given mask's inside; 0 of none
-    double noiseSdHu = 0.0;                   ///< in gas
+    double strandedMl = 0.0;  ///< of the pieces, left out of the lumen as nothing joins it
+    double noiseSdHu = 0.0;   ///< in gas
     /// Of what stands under the colon's gas and is denser than water, however little tagging it
     /// took: the median HU, by area of the surface. None where nothing such stands.
     std::optional<double> taggingHu;

@@ -65,6 +65,9 @@ Result<ProductKey> detectPolyps(Preparation& preparation, const ProductKey& surf
                 "the colon was not flattened: the wall's texture was measured along other "
                 "directions than detection has learnt from, and wall that is thick all around was "
                 "not looked for");
+        // What the path passes by may not have been looked at, or not be in the lumen at all.
+        for (const std::string& line : piecesPassedBy(inputs.centerline, inputs.pieces))
+            findings.warnings.insert(findings.warnings.begin(), "polyps may be missed: " + line);
         if (auto uneven = unevenStepsOf(inputs.ct, options.threads))
             findings.warnings.insert(findings.warnings.begin(), *std::move(uneven));
         if (auto coarse = coarsenessOf(inputs.ct.grid(), series ? &*series : nullptr))

@@ -2,6 +2,7 @@
 
 #include "core/connected_labels.h"
 #include "core/ct_scan.h"
+#include "core/flood_fill.h"
 #include "core/voxel_sweep.h"
 #include "segmentation/hu_range_lumen.h"
 #include "segmentation/tagged_stool.h"
@@ -256,14 +257,17 @@ private:
             // What is small and no bowel of its own may yet be a crumb of the lumen.
             if (a != b && graph_.nodeOf[std::size_t(a ? orifice.b : orifice.a)] < 0) continue;
             double areaMm2 = 0.0;
+            std::vector<std::size_t> voxels;
             visitFacesOf(int(o), [&](std::size_t n, std::size_t m, int axis) {
                 if (orificeAt(n, m) >= 0 && orificeAt(n, m) != int(o)) return;
                 const std::size_t wall = unlikeSoft(n) <= unlikeSoft(m) ? n : m;
                 labels_[wall] = outside, barred_[wall] = true;
                 areaMm2 += grid_.voxelVolumeMm3() / grid_.spacingMm()[axis];
+                voxels.push_back(wall);
             });
-            if (orifice.openMm2 > 0.0)
-                result_.walls.push_back({orifice.placeMm, areaMm2, orifice.radiusMm, a && b});
+            if (orifice.openMm2 <= 0.0) continue;
+            if (a && b) loopWalls_.push_back({result_.walls.size(), std::move(voxels)});
+            result_.walls.push_back({orifice.placeMm, areaMm2, orifice.radiusMm, a && b});
         }
     }
 
@@ -620,9 +624,59 @@ private:
 
     // What the labels' fitting has parted is joined again through the pieces as they were cut.
     void joinUp() {
-        result_.strandedMl = joinBodies(
+        while (joinBodies(false) >= leastPartedMl && openAWallAgain()) {
+        }
+        result_.strandedMl = joinBodies(true);
+    }
+    double joinBodies(bool dropOthers) {
+        const double ml = haustra::joinBodies(
             result_.labels, [&](std::size_t n) { return isKept(cut_.pieceAt[n]) && !barred_[n]; },
-            [&](std::size_t n) { return labelOf(n); });
+            [&](std::size_t n) { return labelOf(n); }, {.dropOthers = dropOthers});
+        labels_ = result_.labels.writable();
+        return ml;
+    }
+
+    // From one of two loops that touch, the colon leads to the other: a wall that parts it is not
+    // between loops, but where a head or a fold leaves little room. Of the walls that the largest
+    // body and others face, the one through which the largest ball passes is opened; false: none.
+    bool openAWallAgain() {
+        const std::vector<bool> largest = largestBody();
+        const LoopWall* widest = nullptr;
+        for (const LoopWall& wall : loopWalls_) {
+            bool faces = false, facesOthers = false;
+            for (const std::size_t n : wall.voxels)
+                visitFaces(grid_, n, [&](std::size_t m, int) {
+                    if (labels_[m] != outside) (largest[m] ? faces : facesOthers) = true;
+                });
+            if (faces && facesOthers &&
+                (!widest ||
+                 result_.walls[wall.wall].radiusMm > result_.walls[widest->wall].radiusMm))
+                widest = &wall;
+        }
+        if (!widest) return false;
+        for (const std::size_t n : widest->voxels)
+            if (isKept(cut_.pieceAt[n])) labels_[n] = labelOf(n), barred_[n] = false;
+        const std::size_t opened = widest->wall;
+        result_.walls[opened].openedAgain = true;
+        std::erase_if(loopWalls_, [&](const LoopWall& wall) { return wall.wall == opened; });
+        return true;
+    }
+    std::vector<bool> largestBody() const {
+        std::vector<bool> met(labels_.size(), false), largest(labels_.size(), false);
+        std::vector<std::size_t> most;
+        for (std::size_t n = 0; n < labels_.size(); ++n) {
+            if (labels_[n] == outside || met[n]) continue;
+            std::vector<std::size_t> body{n};
+            met[n] = true;
+            floodFill(body, faceNeighbours(grid_), [&](std::size_t m) {
+                if (labels_[m] == outside || met[m]) return false;
+                return met[m] = true, true;
+            });
+            if (body.size() > most.size()) most = std::move(body);
+        }
+        for (const std::size_t n : most)
+            largest[n] = true;
+        return largest;
     }
 
     const Volume<std::int16_t>& hu_;
@@ -643,6 +697,12 @@ private:
     std::array<std::int32_t, 2> sides_{-1, -1};               ///< pieces that the last bridge joins
     std::vector<glm::ivec3> laid_;                            ///< voxels of the last bridge
     std::set<int> cuts_;                                      ///< orifices that the chain closes
+    struct LoopWall {
+        std::size_t wall = 0;             // of result_.walls
+        std::vector<std::size_t> voxels;  // that became wall; one may stand twice
+    };
+    std::vector<LoopWall> loopWalls_;
+    static constexpr double leastPartedMl = 10.0;       // a centimetre of colon
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
     ColonLabels result_;
     std::span<std::uint8_t> labels_;

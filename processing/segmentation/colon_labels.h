@@ -17,6 +17,7 @@ struct RebuiltWall {
     double areaMm2 = 0.0;
     double radiusMm = 0.0;      ///< of the largest ball that passed
     bool betweenLoops = false;  ///< both sides are the colon's
+    bool openedAgain = false;   ///< it parted the colon, and so was no wall
 };
 
 struct LabelOptions {
@@ -40,7 +41,8 @@ struct ColonLabels {
 /// of the lumen stays open where the ways from the rectum to its two sides are equally long, but
 /// for what leads around a neck; elsewhere it leads through a wall between two loops, and that wall
 /// is rebuilt, one voxel thick: of each pair of voxels that touch, the one with the HU nearer to
-/// soft tissue's is outside. So is the wall to other bowel. Where the chain crosses a collapse, a
+/// soft tissue's is outside. Where that parts 10 ml and more from the rest, it was no wall, and is
+/// opened again. So is the wall to other bowel rebuilt. Where the chain crosses a collapse, a
 /// bridge of `bridgeRadiusMm` follows its path. Gas within the lumen, behind a wall of its own, is
 /// taken in (enclosed_gas.h). The same for any number of threads. O(voxels).
 ColonLabels layLabels(const Volume<std::int16_t>& hu, const TissueModel& tissue,

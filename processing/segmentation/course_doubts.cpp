@@ -71,6 +71,10 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (cut.insert(end.part).second)
             doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
     }
+    constexpr double muchStrandedMl = 10.0;  // a centimetre of colon
+    if (record.strandedMl >= muchStrandedMl)
+        doubt(0.9, printed("%.0f ml of the colon are joined to nothing, and were left out",
+                           record.strandedMl));
     if (isAnothersMask(record))
         doubt(record.maskInSoftTissue,
               printed("%.0f %% of the mask lie in soft tissue", 100.0 * record.maskInSoftTissue));

@@ -112,7 +112,9 @@ public:
                                     : weights[0] / (weights[0] + made_.runnersUp[0].probability);
         if (!made_.runnersUp.empty()) made_.runnersUp[0].probability = 1.0 - made_.chainConfidence;
         for (const RebuiltWall& wall : labels_.walls)
-            made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
+            if (!wall.openedAgain)
+                made_.walls.push_back({wall.placeMm, wall.areaMm2, wall.betweenLoops});
+        made_.strandedMl = labels_.strandedMl;
         findLeftOut();
         for (const UntaggedLevel& level : untagged_)
             made_.untaggedPools.push_back(
@@ -494,6 +496,12 @@ private:
                             "for other bowel; they may be the colon's, at %s",
                             wall.areaMm2, placeText(wall.placeMm).c_str()));
         }
+        for (const RebuiltWall& wall : labels_.walls)
+            if (wall.openedAgain)
+                say(
+                    printed("an opening of %.0f mm2 was kept, as without it the colon is parted: "
+                            "a polyp or a fold may stand in the way, or two loops touch, at %s",
+                            wall.areaMm2, placeText(wall.placeMm).c_str()));
         std::map<ColonPart, double> untaggedMl;
         for (const ColonPiece& piece : made_.pieces)
             untaggedMl[piece.part] += piece.untaggedMl;

@@ -25,6 +25,7 @@ struct TubeShape {
     double share = 1.0;                   ///< of the circumference that is narrowed
     double aroundHu = -100.0;             ///< outside
     double organShare = 0.0;              ///< of the circumference, against which an organ lies
+    double thickHu = 40.0;                ///< of the narrow stretch's tissue
 };
 
 struct RingTube {
@@ -59,7 +60,8 @@ struct RingTube {
                          outer = glm::mix(17.5, shape.outerMm, narrowness(p.z, angle)) - r;
             const auto step = [](double mm) { return 0.5 + 0.5 * std::tanh(mm / 0.6); };
             const bool isOrgan = std::abs(angle) < shape.organShare * std::numbers::pi;
-            const double wall = glm::mix(isOrgan ? 40.0 : shape.aroundHu, 40.0, step(outer));
+            const double tissue = glm::mix(40.0, shape.thickHu, narrowness(p.z, angle));
+            const double wall = glm::mix(isOrgan ? 40.0 : shape.aroundHu, tissue, step(outer));
             hu.writable()[n] = std::int16_t(std::lround(glm::mix(wall, -990.0, step(inside))));
             lumen.writable()[n] =
                 std::uint8_t(inside > 0.0 ? LumenLabel::air : LumenLabel::outside);
@@ -109,6 +111,7 @@ TEST(AnnularWall, IsToldWithItsStretchAndItsThickness) {
     EXPECT_NEAR(walls[0].fromMm, 100.0, 4.0);
     EXPECT_NEAR(walls[0].toMm, 130.0, 4.0);
     EXPECT_NEAR(walls[0].thicknessMm, 17.5 - 7.0, 1.0);
+    EXPECT_NEAR(walls[0].middleHu, 40.0, 2.0);
 }
 
 TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
@@ -213,6 +216,13 @@ TEST(AnnularWall, AShortOneIsAFindingAndALongOneAWarning) {
     EXPECT_NEAR(tumour.findings[0].arcMm, 115.0, 3.0);
 
     EXPECT_EQ(findingsOf({}, 0.97).findings.size(), 1u) << "whatever point a model operates at";
+
+    const Findings ascites = findingsOf({.thickHu = 8.0});
+    EXPECT_TRUE(ascites.findings.empty());
+    EXPECT_TRUE(std::ranges::any_of(ascites.warnings, [](const std::string& warning) {
+        return warning.find("8 HU at most behind it are fluid's") != std::string::npos;
+    }));
+    EXPECT_EQ(findingsOf({.thickHu = 28.0}).findings.size(), 1u) << "a tumour that is dark";
 
     const Findings segment = findingsOf({.fromMm = 80.0, .toMm = 220.0});
     EXPECT_TRUE(segment.findings.empty());

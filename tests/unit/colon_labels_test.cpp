@@ -94,6 +94,40 @@ int labelledBetween(int wall, bool oneLumen) {
     return labelled;
 }
 
+/// Two halves of a colon, x below and from 30 on, that a gap in a wall joins and nothing else.
+Scene halves(int otherLengthMm) {
+    Scene scene = emptyScene();
+    const Grid& grid = scene.hu.grid();
+    Volume<std::uint8_t> walls(grid, std::uint8_t(0));
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        if (v.x < 2 || v.x >= 30 + otherLengthMm || v.y < 10 || v.y >= 40 || v.z < 5 || v.z >= 35)
+            continue;
+        // What looks like a wall leaves a gap in its middle.
+        const bool isWall = v.x == 30 && (std::abs(v.y - 25) > 3 || std::abs(v.z - 20) > 3);
+        scene.hu.writable()[n] = isWall ? -600 : -1000;
+        scene.contents.content.writable()[n] = std::uint8_t(Content::gas);
+        walls.writable()[n] = isWall;
+    }
+    chainUp(scene, walls, [](const Orifice&) { return false; });
+    return scene;
+}
+
+TEST(ColonLabels, AWallThatPartsTheColonIsNone) {
+    // 22 ml are colon, 9 ml may be a crumb.
+    for (const int lengthMm : {26, 11}) {
+        const Scene scene = halves(lengthMm);
+        const ColonLabels laid = labelsOf(scene);
+        const bool kept =
+            laid.labels.at({30 + lengthMm / 2, 25, 20}) != std::uint8_t(LumenLabel::outside);
+        EXPECT_EQ(kept, lengthMm == 26);
+        EXPECT_EQ(laid.strandedMl < 0.1, lengthMm == 26) << laid.strandedMl;
+        ASSERT_EQ(laid.walls.size(), 1u);
+        EXPECT_EQ(laid.walls[0].openedAgain, lengthMm == 26);
+        EXPECT_TRUE(laid.walls[0].betweenLoops);
+    }
+}
+
 TEST(ColonLabels, PartialVolumeBetweenGasAndItsFluidIsLumen) {
     EXPECT_EQ(labelledBetween(2, true), 30 * 2);
 }

@@ -1088,6 +1088,22 @@
         <source>cases that somebody chose</source>
         <translation>Fällen, die jemand ausgewählt hat</translation>
     </message>
+    <message>
+        <source>on %1 mm of the colon, from %2 mm on, nothing is told of how thick the wall is: %3 HU at most behind it are fluid&apos;s, around the colon or in a wall that is swollen</source>
+        <translation>Auf %1 mm des Kolons, ab %2 mm, wird nicht gesagt, wie dick die Wand ist: Höchstens %3 HU dahinter gehören zu Flüssigkeit, um das Kolon oder in einer geschwollenen Wand</translation>
+    </message>
+    <message>
+        <source>polyps may be missed: %1</source>
+        <translation>Polypen können übersehen sein: %1</translation>
+    </message>
+    <message>
+        <source>an opening of %1 mm2 was kept, as without it the colon is parted: a polyp or a fold may stand in the way, or two loops touch, at %2</source>
+        <translation>Eine Öffnung von %1 mm2 blieb, da das Kolon ohne sie geteilt ist: Ein Polyp oder eine Falte kann im Weg stehen, oder zwei Schlingen berühren sich, bei %2</translation>
+    </message>
+    <message>
+        <source>%1 ml of the colon are joined to nothing, and were left out</source>
+        <translation>%1 ml des Kolons hängen mit nichts zusammen und wurden ausgelassen</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::BookmarkPanel</name>
@@ -1599,6 +1615,10 @@
     <message>
         <source>all around, %1 mm thick</source>
         <translation>ringsum, %1 mm dick</translation>
+    </message>
+    <message>
+        <source>A rule tells it: no probability</source>
+        <translation>Eine Regel nennt ihn: keine Wahrscheinlichkeit</translation>
     </message>
 </context>
 <context>
