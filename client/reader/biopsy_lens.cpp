@@ -45,7 +45,9 @@ void BiopsyLens::setRadius(double heights) {
 void BiopsyLens::close() {
     owes_ = false;
     if (std::exchange(openSide_, 0) == 0) return;
-    session_.setViewport(viewport, View::endoscopic, 0, 0, true);
+    // A link that came back may be to a server that has no lens.
+    if (session_.serverCan(protocol::capability::lens))
+        session_.setViewport(viewport, View::endoscopic, 0, 0, true);
     askedCamera_.reset();
     asked_.clear();
     picture_ = {};

@@ -1,9 +1,11 @@
 // The findings of a case as the server lists them.
 #pragma once
 
+#include "core/camera.h"
 #include "core/findings.h"
 #include "reader/flat_strip.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,8 @@ struct ListedFinding {
     /// Its score is the probability. Features are not told, and voxels where the list had room.
     Finding finding;
     WallPlace wall;  ///< at its top
+    /// That shows it, where a look from the path at the wall's arc does not.
+    std::optional<Camera> view = {};
 };
 
 /// Whether both are one finding of one search: a case that is searched anew may number another

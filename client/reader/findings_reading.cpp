@@ -58,15 +58,20 @@ const ListedFinding* FindingsReading::find(int number) const {
     return nullptr;
 }
 
+const ListedFinding* FindingsReading::current() const {
+    const ListedFinding* now = current_ ? find(current_->number) : nullptr;
+    return now && isSame(*now, *current_) ? now : nullptr;
+}
+
 const ListedFinding* FindingsReading::next(int step, double arcMm) const {
     const auto all = shown();
-    constexpr double sameArcMm = 0.5;
     if (const ListedFinding* here = current();
-        here && std::abs(here->wall.arcMm - arcMm) < sameArcMm) {
+        here && std::abs(here->wall.arcMm - arcMm) <= besideMm) {
         const std::ptrdiff_t n = (here - all.data()) + step;
         return n >= 0 && n < std::ptrdiff_t(all.size()) ? &all[std::size_t(n)] : nullptr;
     }
     const ListedFinding* found = nullptr;
+    constexpr double sameArcMm = 0.5;
     double nearest = INFINITY;
     for (const ListedFinding& one : all) {
         // One right here has not been gone to: it comes first, of several the first on the way.

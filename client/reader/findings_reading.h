@@ -3,7 +3,9 @@
 
 #include "reader/session.h"
 
+#include <optional>
 #include <span>
+#include <utility>
 
 namespace haustra::reader {
 
@@ -12,7 +14,7 @@ class FindingsReading {
 public:
     explicit FindingsReading(Session& session) : session_(session) {}
     /// Another case is open.
-    void open() { current_ = 0; }
+    void open() { current_.reset(); }
 
     /// Whether the open case has findings that the server can show. Not while another case is being
     /// opened: what is chosen meanwhile would be chosen for that one.
@@ -29,18 +31,20 @@ public:
     /// Those that are shown, along the colon; empty while none may be.
     std::span<const ListedFinding> shown() const;
     const ListedFinding* find(int number) const;
-    /// The one that was gone to last, while it is shown.
-    const ListedFinding* current() const { return find(current_); }
-    void setCurrent(int number) { current_ = number; }
-    /// The next (or, with −1, previous) along the colon: from the current one, where the reader
-    /// is still at its arc, else from the arc. Null where there is none.
+    /// The one that was gone to last, while it is shown; none of a list that is made anew.
+    const ListedFinding* current() const;
+    void setCurrent(std::optional<ListedFinding> finding) { current_ = std::move(finding); }
+    /// The next (or, with −1, previous) along the colon: after the current one, so that none is
+    /// passed over, while the reader is within besideMm of its arc, as who looks around at it is;
+    /// else from the arc on. Null where there is none.
     const ListedFinding* next(int step, double arcMm) const;
+    static constexpr double besideMm = 40.0;
 
 private:
     bool isLeft() const;
 
     Session& session_;
-    int current_ = 0;
+    std::optional<ListedFinding> current_;
 };
 
 }  // namespace haustra::reader

@@ -324,6 +324,14 @@ tl::unexpected<Error> refuseFinding(const char* what) {
     return fail(ErrorKind::badInput, what, "findings");
 }
 
+// With unit, orthogonal directions.
+Result<Camera> viewFrom(const protocol::Camera& message) {
+    auto view = TRY(protocol::cameraFrom(message));
+    view.forward = glm::normalize(view.forward);
+    view.up = glm::cross(glm::normalize(glm::cross(view.forward, view.up)), view.forward);
+    return view;
+}
+
 Result<ListedFinding> findingFrom(const protocol::Finding& message, const Grid& grid) {
     ListedFinding listed;
     constexpr std::uint32_t greatestNumber = 1'000'000;
@@ -332,6 +340,7 @@ Result<ListedFinding> findingFrom(const protocol::Finding& message, const Grid& 
     listed.number = int(message.number());
     listed.candidate = message.below_operating_point();
     listed.wall = TRY(placeFrom(message.wall()));
+    if (message.has_view()) listed.view = TRY(viewFrom(message.view()));
     Finding& finding = listed.finding;
     finding.positionMm = protocol::vectorFrom(message.position_mm());
     finding.wallMm = listed.wall.positionMm;
@@ -434,12 +443,7 @@ Result<std::vector<MissedPlace>> patchesFrom(
         MissedPlace one{patch.area_mm2(), TRY(placeFrom(patch.place())), std::nullopt};
         if (!isWithin(one.areaMm2, 0.0, mostWallMm2))
             return refuseSeen("the server sent a patch whose area is none");
-        if (patch.has_view()) {
-            auto view = TRY(protocol::cameraFrom(patch.view()));
-            view.forward = glm::normalize(view.forward);
-            view.up = glm::cross(glm::normalize(glm::cross(view.forward, view.up)), view.forward);
-            one.view = view;
-        }
+        if (patch.has_view()) one.view = TRY(viewFrom(patch.view()));
         patches.push_back(std::move(one));
     }
     return patches;

@@ -191,9 +191,9 @@ std::vector<PlaceRuler> Reader::shownRulers() const {
 
 void Reader::goTo(const ListedFinding& finding) {
     if (!case_) return;
-    findings_.setCurrent(finding.number);
+    findings_.setCurrent(finding);
     setMotion(Motion::paused);
-    flat_.goTo(finding.wall);
+    flat_.goTo(finding.wall, finding.view);
     slices_.show(finding.wall.positionMm, flight_.camera().positionMm);
 }
 

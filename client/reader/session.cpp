@@ -316,6 +316,7 @@ void Session::opened(const protocol::CaseOpened& message) {
         ++bookmarksRevision_;
         takeFromJournal();
     }
+    if (!serverCan(protocol::capability::findings)) ++findingsRevision_;  // nothing answers here
     phase_ = Phase::open;
     askAgain();
 }

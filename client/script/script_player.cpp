@@ -772,7 +772,9 @@ Status Player::run(const FindingAction& action, ActionReport& report) {
                         (findings.choice().shows()
                              ? " is not listed"
                              : ": findings are not shown in the mode that was chosen"));
-    if (!flight_.centerline().points.empty())
+    if (found->view)
+        flight_.goTo(*found->view, found->wall.arcMm);
+    else if (!flight_.centerline().points.empty())
         flight_.lookAt(found->wall.arcMm, found->wall.positionMm);
     report.place = found->wall;
     return {};

@@ -18,7 +18,6 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSettings>
-#include <QSignalBlocker>
 #include <QSpinBox>
 #include <QTreeWidget>
 #include <QVBoxLayout>
@@ -103,6 +102,12 @@ protected:
     }
 };
 
+/// The wheel scrolls the panel here, too: nothing is shown or hidden by the way.
+class ThresholdBox : public QSpinBox {
+protected:
+    void wheelEvent(QWheelEvent* event) override { event->ignore(); }
+};
+
 void tellRefusal(Reading& reading, const Result<void>& done) {
     const QString why = whyNone(reading.reader().session());
     if (!done) reading.tell(why.isEmpty() ? text(done.error().message) : why);
@@ -185,7 +190,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
       firstPass_(new QPushButton(tr("First reading done: show findings"))),
       measure_(new QPushButton(tr("Measure"))),
       candidates_(new QCheckBox(tr("also those from"))),
-      least_(new QSpinBox),
+      least_(new ThresholdBox),
       list_(new QTreeWidget),
       state_(new QLabel),
       notes_(new QPlainTextEdit) {
@@ -196,6 +201,7 @@ FindingsPanel::FindingsPanel(Reading& reading)
     candidates_->setAccessibleName(tr("Also show less probable findings"));
     candidates_->setToolTip(tr("Places that scored below the operating point, in another colour"));
     measure_->setToolTip(tr("The finding's largest diameter, as a ruler in all views"));
+    least_->setFocusPolicy(Qt::StrongFocus);  // not by the wheel
     least_->setRange(0, 100);
     least_->setValue(30);
     least_->setSuffix(tr(" %"));
@@ -290,7 +296,10 @@ void FindingsPanel::look() {
         control->setEnabled(has);
     const DetectionChoice& choice = findings.choice();
     least_->setEnabled(has && candidates_->isChecked());
-    firstPass_->setVisible(choice.mode == DetectionMode::secondReader && !choice.firstPassDone);
+    const bool waits = choice.mode == DetectionMode::secondReader && !choice.firstPassDone;
+    // What is hidden leaves the keyboard to the next control, which Space would press.
+    if (!waits && firstPass_->hasFocus()) list_->setFocus();
+    firstPass_->setVisible(waits);
     firstPass_->setEnabled(has && !choice.firstPassDone);
     list_->setEnabled(has);
     const bool measures = has && findings.current();
@@ -319,20 +328,21 @@ void FindingsPanel::fill() {
     list_->clear();
     for (const reader::ListedFinding& one : reading_.reader().findings().shown()) {
         const Finding& finding = one.finding;
+        const bool isAnnular = finding.kind == annularKind;
         auto* item = new QTreeWidgetItem(
             list_, {QString::number(one.number), QString::number(finding.arcMm, 'f', 0),
                     nameOfSegment(finding.segment), tr("%1 mm").arg(decimal(finding.diameterMm)),
-                    percent(finding.score)});
+                    isAnnular ? QStringLiteral("–") : percent(finding.score)});
         for (const int column : {0, 1, 3, 4})
             item->setTextAlignment(column, Qt::AlignRight | Qt::AlignVCenter);
         item->setData(0, numberRole, one.number);
         item->setToolTip(2, toolTipOf(shapeOf(finding)));
-        if (!one.candidate) continue;
-        QFont slanted = list_->font();
-        slanted.setItalic(true);
-        for (int column = 0; column < 5; ++column) {
-            item->setFont(column, slanted);
-            item->setForeground(column, theme().muted);
+        if (isAnnular) item->setToolTip(4, toolTipOf(tr("A rule tells it: no probability")));
+        QFont font = list_->font();
+        font.setItalic(one.candidate);
+        for (int column = 0; column < list_->columnCount(); ++column) {
+            item->setFont(column, font);
+            if (one.candidate) item->setForeground(column, theme().muted);
         }
     }
     shownCurrent_ = 0;
@@ -357,9 +367,17 @@ void FindingsPanel::markCurrent() {
     const int number = current ? current->number : 0;
     if (number == shownCurrent_) return;
     shownCurrent_ = number;
-    for (int n = 0; n < list_->topLevelItemCount(); ++n)
-        if (list_->topLevelItem(n)->data(0, numberRole).toInt() == number)
-            list_->setCurrentItem(list_->topLevelItem(n));
+    // Bold, too: the arrow keys lead the list's own mark on, and "Measure" measures this one.
+    for (int n = 0; n < list_->topLevelItemCount(); ++n) {
+        QTreeWidgetItem* item = list_->topLevelItem(n);
+        const bool isIt = item->data(0, numberRole).toInt() == number;
+        for (int column = 0; column < list_->columnCount(); ++column) {
+            QFont font = item->font(column);
+            font.setBold(isIt);
+            item->setFont(column, font);
+        }
+        if (isIt) list_->setCurrentItem(item);
+    }
 }
 
 void FindingsPanel::goTo(int number) {

@@ -44,6 +44,7 @@
 #include <QScrollArea>
 #include <QSettings>
 #include <QStatusBar>
+#include <QTimer>
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -90,10 +91,15 @@ bool needsKey(const QWidget* widget, const QKeyEvent& key) {
     if (qobject_cast<const QAbstractButton*>(widget)) return presses;
     if (qobject_cast<const QAbstractSlider*>(widget)) return arrows;
     if (qobject_cast<const QComboBox*>(widget)) return arrows || presses;
-    if (qobject_cast<const QAbstractSpinBox*>(widget) || qobject_cast<const QLineEdit*>(widget))
-        return arrows || types || presses || key.key() == Qt::Key_Backspace ||
-               key.key() == Qt::Key_Delete;
-    if (qobject_cast<const QAbstractItemView*>(widget)) return arrows || presses;
+    const bool enters = key.key() == Qt::Key_Return || key.key() == Qt::Key_Enter;
+    const bool erases = key.key() == Qt::Key_Backspace || key.key() == Qt::Key_Delete;
+    if (qobject_cast<const QAbstractSpinBox*>(widget)) {
+        const QChar typed = types ? key.text()[0] : QChar();
+        return arrows || enters || erases || typed.isDigit() ||
+               QStringLiteral("+-.,").contains(typed);
+    }
+    if (qobject_cast<const QLineEdit*>(widget)) return arrows || types || presses || erases;
+    if (qobject_cast<const QAbstractItemView*>(widget)) return arrows || enters;
     // The transfer function's graph moves its points.
     return widget->inherits("haustra::window::TransferGraph") &&
            (arrows || key.key() == Qt::Key_Insert || key.key() == Qt::Key_Delete ||
@@ -579,7 +585,10 @@ std::size_t ReaderWindow::windowPreset() const {
 
 void ReaderWindow::toggleOptics() {
     QDockWidget* dock = docks_.optics;
-    if (dock->isVisible()) return dock->hide();
+    if (dock->isVisible()) {
+        dock->hide();
+        return keepKeysOnPanes();
+    }
     if (dock->isFloating() && !placedOptics_) {
         placedOptics_ = true;
         const QSize size = dock->widget()->sizeHint() + QSize(20, 40);
@@ -603,7 +612,15 @@ void ReaderWindow::writeNote() {
 }
 void ReaderWindow::toggleBookmarks() {
     docks_.bookmarks->setVisible(!docks_.bookmarks->isVisible());
-    if (!docks_.bookmarks->isVisible() && !focusedPane()) focusPane(nullptr);
+    if (!docks_.bookmarks->isVisible()) keepKeysOnPanes();
+}
+// What was hidden leaves the keyboard to the next control, such as the button that leaves the case,
+// which Space would press.
+void ReaderWindow::keepKeysOnPanes() {
+    const QWidget* focused = QApplication::focusWidget();
+    for (const QDockWidget* dock : docks_.all())
+        if (focused && dock->isVisible() && dock->isAncestorOf(focused)) return;
+    focusPane(nullptr);
 }
 bool ReaderWindow::showsBookmarks() const {
     return docks_.bookmarks->isVisible();
@@ -623,7 +640,10 @@ void ReaderWindow::saveSeenReport() {
     missed_->saveReport();
 }
 void ReaderWindow::toggleList(QDockWidget* dock) {
-    if (dock->isVisible() && !dock->visibleRegion().isEmpty()) return dock->hide();
+    if (dock->isVisible() && !dock->visibleRegion().isEmpty()) {
+        dock->hide();
+        return keepKeysOnPanes();
+    }
     dock->show();
     dock->raise();
     // The list of bookmarks, whose place it shares, needs less.
@@ -759,6 +779,8 @@ bool ReaderWindow::eventFilter(QObject* object, QEvent* event) {
         arrange(BuiltinLayout::reading);
         return true;
     }
+    if (event->type() == QEvent::Close && qobject_cast<QDockWidget*>(object))
+        QTimer::singleShot(0, this, &ReaderWindow::keepKeysOnPanes);
     if (event->type() == QEvent::ShortcutOverride) {
         const auto& key = static_cast<const QKeyEvent&>(*event);
         if (needsKey(qobject_cast<QWidget*>(object), key)) {

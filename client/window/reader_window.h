@@ -93,6 +93,7 @@ private:
     void keepLayout();
     bool handleHeldKeys(QEvent* event);
     void toggleList(QDockWidget* dock);
+    void keepKeysOnPanes();
 
     Reading& reading_;
     QMainWindow second_;

@@ -217,7 +217,7 @@ std::function<void()> Reading::wayBack() {
     reader::Reader& reader = *reader_;
     const reader::ListedFinding* at = reader.findings().current();
     return [&reader, flight = reader.flight(), slices = reader.slices(),
-            finding = at ? at->number : 0] {
+            finding = at ? std::optional(*at) : std::nullopt] {
         reader.setMotion(reader::Motion::paused);
         reader.restore(flight, slices);
         reader.findings().setCurrent(finding);

@@ -233,14 +233,16 @@ void GreyPane::paintRulers(QPainter& painter, const SlicePlacement& placement) {
                    theme().measuredOnPicture);
 }
 
-// Where the plane passes through a finding, a ring around its section as of a ball.
+// Where the plane passes through a finding, a ring around its section as of a ball; of wall that is
+// thick all around, as of a ball that a colon holds: its length may reach into other loops.
 void GreyPane::paintFindings(QPainter& painter, const SlicePlacement& placement) {
     FindingRings rings(painter, rect());
     for (const reader::ListedFinding& one : reader().findings().shown()) {
         const double aside =
             std::abs(glm::dot(one.finding.positionMm - placement.topLeftMm, placement.normal()));
-        constexpr double aroundMm = 2.0;
-        const double radiusMm = 0.5 * one.finding.diameterMm + aroundMm;
+        constexpr double aroundMm = 2.0, colonRadiusMm = 20.0;
+        double radiusMm = 0.5 * one.finding.diameterMm + aroundMm;
+        if (one.finding.kind == annularKind) radiusMm = std::min(radiusMm, colonRadiusMm);
         if (aside >= radiusMm) continue;
         const double sectionMm = std::sqrt(radiusMm * radiusMm - aside * aside);
         rings.paint(positionOf(placement, one.finding.positionMm),

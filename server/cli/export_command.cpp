@@ -70,6 +70,7 @@ Result<void> exportReport(const store::Case& source, const ExportArguments& argu
                     "again); findings are exported as .json",
                     "case " + source.name());
     }
+    const auto before = TRY(source.scan());
     TRY(source.verify(product::source));
     const std::string place = "case " + source.name() + ", ";
     const auto findings = TRY(source.readText(product::findings).and_then([&](const auto& text) {
@@ -78,6 +79,12 @@ Result<void> exportReport(const store::Case& source, const ExportArguments& argu
     const auto series = TRY(source.readText(product::source).and_then([&](const auto& text) {
         return sourceSeriesOfJson(text, place + product::source);
     }));
+    // Two products were read one after the other, and both must be of one scan.
+    const auto after = TRY(source.scan());
+    const auto keyOf = [](const auto& scan) { return scan ? scan->key.hex : std::string(); };
+    if (keyOf(before) != keyOf(after))
+        return fail(ErrorKind::io, "the case became one of another scan while it was exported",
+                    "case " + source.name());
     return dicom::writeColonCadReport(arguments.file, findings, series,
                                       {.series = arguments.series});
 }

@@ -45,9 +45,10 @@ void addFlatImageOptions(CLI::App& command, FlatImageOptions& options) {
     group->add_flag("--caption", options.caption,
                     "Draw the strip's ends and a scale of millimetres along the centerline, and "
                     "around findings rings with their numbers");
-    auto* findings =
-        group->add_flag("--findings", options.findings,
-                        "Colour the case's findings green, and what scored lower violet");
+    auto* findings = group->add_flag(
+        "--findings", options.findings,
+        "Colour the case's findings green, and violet what scored lower and is asked "
+        "for (--least-probability)");
     group
         ->add_option("--least-probability", options.leastProbability,
                      "And the candidates below the operating point that are so probable to be a "

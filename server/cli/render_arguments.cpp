@@ -180,10 +180,12 @@ void addDrawingOptions(CLI::App& command, RenderArguments& my) {
         ->type_name("V")
         ->check(numberRange(0.05, 4.0));
     command
-        .add_option("--paint", my.paint,
-                    "A picture of the whole strip, of its shape, as flat-image is without a seam "
-                    "margin, that colours the endoscopic view's wall; or findings: the case's own, "
-                    "in all views of the wall: green, and what scored lower violet")
+        .add_option(
+            "--paint", my.paint,
+            "A picture of the whole strip, of its shape, as flat-image is without a seam "
+            "margin, that colours the endoscopic view's wall; or findings: the case's own, "
+            "in all views of the wall: green, and violet what scored lower and is asked for "
+            "(--least-probability)")
         ->type_name("FILE.png|.tif|findings")
         ->check([](const std::string& text) {
             std::error_code ignored;

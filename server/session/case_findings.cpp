@@ -1,6 +1,9 @@
 #include "session/case_findings.h"
 
+#include "core/missed_patches.h"
+#include "core/parallel.h"
 #include "protocol/limits.h"
+#include "render/wall/review_camera.h"
 #include "store/products.h"
 
 #include <algorithm>
@@ -21,6 +24,28 @@ bool isSound(const Finding& finding) {
            std::abs(finding.heightMm) <= protocol::maxCoordinateMm &&
            std::abs(finding.arcMm) <= protocol::maxCoordinateMm && finding.score >= 0.0 &&
            finding.score <= 1.0;
+}
+
+// Of each entry the triangles that are its own, as a patch to be looked at.
+std::vector<MissedPatch> patchesOf(const CaseFindings& findings, const render::WallSight& sight) {
+    std::vector<MissedPatch> patches(findings.entries.size());
+    const auto ofTriangle = render::findingTriangles(sight, findings.product);
+    for (std::size_t t = 0; t < ofTriangle.size(); ++t) {
+        if (ofTriangle[t] < 0) continue;
+        MissedPatch& patch = patches[std::size_t(ofTriangle[t])];
+        const render::WallSight::Facet& facet = sight.facets()[t];
+        patch.triangles.push_back(std::int32_t(t));
+        patch.areaMm2 += double(facet.areaMm2);
+        patch.inward += double(facet.areaMm2) * glm::dvec3(facet.inward);
+    }
+    for (std::size_t n = 0; n < patches.size(); ++n) {
+        const WallPlace& wall = findings.entries[n].wall;
+        patches[n].centerMm = wall.positionMm;
+        patches[n].arcMm = wall.arcMm;
+        if (const double length = glm::length(patches[n].inward); length > 0.0)
+            patches[n].inward /= length;
+    }
+    return patches;
 }
 
 }  // namespace
@@ -57,7 +82,14 @@ std::shared_ptr<const CaseFindings> placeFindings(Findings findings, const Cente
     std::iota(made->alongColon.begin(), made->alongColon.end(), 0);
     std::stable_sort(made->alongColon.begin(), made->alongColon.end(),
                      [&](int a, int b) { return made->finding(a).arcMm < made->finding(b).arcMm; });
-    if (wall) made->paint = render::findingPixels(*wall->painter, made->product);
+    if (!wall) return made;
+    made->paint = render::findingPixels(*wall->painter, made->product);
+    const render::WallSight& sight = wall->painter->sight();
+    const std::vector<MissedPatch> patches = patchesOf(*made, sight);
+    parallelFor(patches.size(), 1, 0, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            made->entries[n].view = render::viewBesidePath(sight, patches[n], centerline);
+    });
     return made;
 }
 

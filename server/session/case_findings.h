@@ -2,6 +2,7 @@
 // of them a reader is shown.
 #pragma once
 
+#include "core/camera.h"
 #include "core/centerline.h"
 #include "core/detection_choice.h"
 #include "core/findings.h"
@@ -12,6 +13,7 @@
 #include "store/case_store.h"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace haustra::session {
@@ -24,6 +26,8 @@ struct CaseFindings {
         /// Its top on the wall, with what looks at it. Of a case that has not been flattened the
         /// camera is the nearest place of the path, and both triangles are −1.
         WallPlace wall;
+        /// From where it is seen, where a look from the path at the wall's arc does not show it.
+        std::optional<Camera> view = {};
     };
     Findings product;
     /// In the order of numbers: a finding's is its index and 1.

@@ -374,6 +374,7 @@ void fill(protocol::Finding& message, const CaseFindings::Entry& entry, const Fi
     message.set_kind(shortened(finding.kind, protocol::maxFindingKindBytes));
     message.set_probability(finding.score);
     message.set_below_operating_point(entry.candidate);
+    if (entry.view) protocol::fill(*message.mutable_view(), *entry.view);
 }
 
 }  // namespace

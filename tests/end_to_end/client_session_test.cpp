@@ -253,6 +253,10 @@ TEST_F(ClientSession, FindingsComeWhenTheModeShowsThemAndAgainAfterALostLink) {
                                     findings.shown()[2].number};
     EXPECT_EQ(order, (std::vector{1, 3, 2}));
     EXPECT_TRUE(findings.shown()[1].candidate);
+    EXPECT_FALSE(findings.shown()[0].view);
+    ASSERT_TRUE(findings.shown()[1].view);
+    EXPECT_EQ(findings.shown()[1].view->forward, glm::dvec3(0, 0, 1));
+    EXPECT_EQ(findings.shown()[1].view->up, glm::dvec3(0, -1, 0));
     EXPECT_EQ(findings.shown()[0].finding.segment, ColonSegment::sigmoid);
     EXPECT_EQ(findings.shown()[0].finding.voxels.size(), 1u);
     // From one to the next, also of those at one arc.
@@ -262,9 +266,18 @@ TEST_F(ClientSession, FindingsComeWhenTheModeShowsThemAndAgainAfterALostLink) {
     const double firstArcMm = findings.shown()[0].wall.arcMm;
     EXPECT_EQ(findings.next(1, firstArcMm)->number, 1);
     EXPECT_EQ(findings.next(-1, firstArcMm)->number, 1);
-    findings.setCurrent(3);
-    EXPECT_EQ(findings.next(1, findings.current()->wall.arcMm)->number, 2);
-    EXPECT_EQ(findings.next(-1, findings.current()->wall.arcMm)->number, 1);
+    findings.setCurrent(*findings.find(3));
+    // Who looks around at one is still there, and passes none over.
+    for (const double awayMm : {0.0, 3.0, -3.0, 30.0}) {
+        EXPECT_EQ(findings.next(1, findings.current()->wall.arcMm + awayMm)->number, 2);
+        EXPECT_EQ(findings.next(-1, findings.current()->wall.arcMm + awayMm)->number, 1);
+    }
+    EXPECT_EQ(findings.next(1, findings.shown().back().wall.arcMm + 41.0), nullptr);
+    // Of a search that has another at its number, none is the one that was gone to.
+    ListedFinding former = *findings.find(3);
+    former.wall.positionMm.x += 1.0;
+    findings.setCurrent(former);
+    EXPECT_EQ(findings.current(), nullptr);
     // The server hears the mode again before it is asked for the list.
     const int heard = server.detectionMessages();
     server.setDown(true);

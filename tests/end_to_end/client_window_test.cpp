@@ -382,7 +382,7 @@ protected:
         return [before = isOn(), isOn] { return isOn() != before; };
     }
     bool showFindings() {
-        reader().findings().setCurrent(0);
+        reader().findings().setCurrent({});
         return reader().findings().choose(DetectionMode::concurrent) &&
                waitFor([&] { return reader().findings().shown().size() == 2; });
     }
@@ -1662,6 +1662,16 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     click(*done, done->rect().center());
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 2; }));
     EXPECT_FALSE(done->isVisible());
+    // The button that hides leaves the keyboard to no other, which Space would press.
+    const auto spaceFlies = [&] {
+        press(Qt::Key_Space);
+        const bool flies = waitFor([&] { return reader().motion() == reader::Motion::forward; });
+        if (flies) press(Qt::Key_Space);
+        return flies && waitFor([&] { return reader().motion() == reader::Motion::paused; });
+    };
+    EXPECT_EQ(QApplication::focusWidget(), &list);
+    EXPECT_TRUE(spaceFlies());
+    EXPECT_FALSE(reader().findings().choice().leastProbability);
     EXPECT_EQ(list.topLevelItem(0)->text(0), QStringLiteral("1"));
     EXPECT_EQ(list.topLevelItem(0)->text(2), QStringLiteral("sigmoid"));
     EXPECT_EQ(list.topLevelItem(1)->text(4), QStringLiteral("70 %"));
@@ -1673,13 +1683,18 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 3; }));
     EXPECT_EQ(list.topLevelItem(1)->text(0), QStringLiteral("3"));
     EXPECT_TRUE(least.isEnabled());
+    wheel(least, {5, 5}, -1);
+    EXPECT_EQ(least.text(), QStringLiteral("30 %"));
+    EXPECT_FALSE(least.hasFocus());
     // A click leads all views there.
     flight().goTo(0.0);
     list.scrollToItem(list.topLevelItem(1));
     click(*list.viewport(), list.visualItemRect(list.topLevelItem(1)).center());
     const auto* third = reader().findings().find(3);
-    ASSERT_TRUE(third);
-    ASSERT_TRUE(waitFor([&] { return std::abs(flight().arcMm() - third->wall.arcMm) < 1e-6; }));
+    ASSERT_TRUE(third && third->view);
+    ASSERT_TRUE(waitFor([&] { return flight().isFree(); })) << "it is not seen from the path";
+    EXPECT_LT(glm::distance(flight().camera().positionMm, third->view->positionMm), 1e-9);
+    EXPECT_LT(glm::distance(flight().camera().forward, glm::dvec3(0, 0, 1)), 1e-9);
     EXPECT_LT(glm::distance(slices().slice(View::axial).positionMm, third->wall.positionMm), 1.0);
     EXPECT_LT(glm::distance(reader().flat().tour().window().center, *third->wall.flat), 1e-6);
     // A double click is one step, and so is Enter.
@@ -1695,6 +1710,17 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
               1);
     EXPECT_EQ(stepsBy([&] { QTest::keyClick(&list, Qt::Key_Return); }), 1);
     EXPECT_EQ(reader().findings().current()->number, 3);
+    // Its row alone is bold, wherever the arrow keys have led the list's mark.
+    QTest::keyClick(&list, Qt::Key_Down);
+    EXPECT_EQ(list.currentItem(), list.topLevelItem(2));
+    for (int row = 0; row < 3; ++row)
+        EXPECT_EQ(list.topLevelItem(row)->font(0).bold(), row == 1) << row;
+    // A panel that is hidden leaves the keyboard to the views.
+    list.setFocus();
+    press(Qt::Key_F, Qt::ShiftModifier);
+    EXPECT_TRUE(waitFor([&] { return qobject_cast<Pane*>(QApplication::focusWidget()); }));
+    press(Qt::Key_F, Qt::ShiftModifier);
+    ASSERT_TRUE(waitFor([&] { return list.isVisible(); }));
     // Who goes on and takes it back is at the former one again, and measures that.
     press(Qt::Key_M, Qt::ShiftModifier);
     const auto isAt = [&](int number) {

@@ -186,7 +186,8 @@ protocol::FindingList fakeFindings(const protocol::SetDetection& choice) {
     list.set_model("fake-1");
     list.set_trained_on("nothing: this is a test");
     if (!shows) return list;
-    const auto add = [&](std::uint32_t number, double part, double probability) {
+    const auto add = [&](std::uint32_t number, double part, double probability,
+                         bool hidden = false) {
         protocol::Finding& finding = *list.add_findings();
         finding.set_number(number);
         *finding.mutable_wall() = fakePlace({0.25, part * fakeStripHeight});
@@ -203,9 +204,14 @@ protocol::FindingList fakeFindings(const protocol::SetDetection& choice) {
         finding.set_below_operating_point(probability < list.operating_point());
         for (const std::uint32_t n : {100u, 100u, 50u, 3u})
             finding.add_voxels(n);
+        if (hidden)
+            protocol::fill(*finding.mutable_view(), Camera{{p.x() + 1.0, p.y() + 2.0, p.z() - 9.0},
+                                                           {0.0, 0.0, 2.0},
+                                                           {0.0, -1.0, 0.5},
+                                                           90.0});
     };
     add(1, 1.0 / 3.0, 0.9);
-    if (choice.has_least_probability() && choice.least_probability() <= 0.3) add(3, 0.5, 0.3);
+    if (choice.has_least_probability() && choice.least_probability() <= 0.3) add(3, 0.5, 0.3, true);
     add(2, 2.0 / 3.0, 0.7);
     return list;
 }

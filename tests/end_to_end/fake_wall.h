@@ -27,7 +27,7 @@ protocol::WallPlace fakeMark(double arcMm);
 protocol::ServerMessage fakePick(const protocol::PickWall& question, bool flattened);
 /// What is told of the case's findings after this choice: two and, between them along the colon, a
 /// candidate (number 3, 0.3 probable) at the places of fakePlace where x = ¼, a third, a half and
-/// two thirds of the way up the strip.
+/// two thirds of the way up the strip. The candidate has a view, which is not on the path.
 protocol::FindingList fakeFindings(const protocol::SetDetection& choice);
 /// Three patches at the places of fakePlace where y is 1, 4 and 5, of 900, 600 and 400 mm²; the
 /// first two with a view, from fakeRadiusMm / 2 off the path.

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
+#include <numeric>
+#include <optional>
 
 namespace haustra::render {
 namespace {
@@ -85,20 +86,58 @@ int FindingTissue::at(glm::dvec3 placeMm, glm::dvec3 inward) const {
     return -1;
 }
 
+namespace {
+
+// What two of them hold is the more probable one's.
+class RankedFindings {
+public:
+    explicit RankedFindings(const Findings& findings)
+        : indices_(findings.findings.size() + findings.candidates.size()) {
+        std::iota(indices_.begin(), indices_.end(), 0);
+        const auto above = std::int32_t(findings.findings.size());
+        const auto of = [&](std::int32_t n) -> const Finding& {
+            return n < above ? findings.findings[std::size_t(n)]
+                             : findings.candidates[std::size_t(n - above)];
+        };
+        std::stable_sort(indices_.begin(), indices_.end(), [&](std::int32_t a, std::int32_t b) {
+            const bool aIsBelow = a >= above, bIsBelow = b >= above;
+            return aIsBelow != bIsBelow ? bIsBelow : of(a).score > of(b).score;
+        });
+        std::vector<Finding> ranked;
+        for (const std::int32_t n : indices_)
+            ranked.push_back(of(n));
+        tissue_.emplace(findings.grid, ranked);
+    }
+    std::int32_t at(glm::dvec3 placeMm, glm::dvec3 inward) const {
+        const int rank = tissue_->at(placeMm, inward);
+        return rank < 0 ? -1 : indices_[std::size_t(rank)];
+    }
+    std::vector<std::int32_t> ofTriangles(const WallSight& sight) const {
+        const auto& facets = sight.facets();
+        std::vector<std::int32_t> of(facets.size(), -1);
+        parallelFor(facets.size(), 4096, 0, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t)
+                if (!sight.isBridge(int(t)))
+                    of[t] = at(sight.originMm() + glm::dvec3(facets[t].middleMm),
+                               glm::dvec3(facets[t].inward));
+        });
+        return of;
+    }
+    std::size_t count() const { return indices_.size(); }
+
+private:
+    std::vector<std::int32_t> indices_;  // of the findings, the first in rank first
+    std::optional<FindingTissue> tissue_;
+};
+
+}  // namespace
+
+std::vector<std::int32_t> findingTriangles(const WallSight& sight, const Findings& findings) {
+    return RankedFindings(findings).ofTriangles(sight);
+}
+
 std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findings& findings) {
-    std::vector<std::pair<Finding, std::int32_t>> byScore;
-    for (const auto* list : {&findings.findings, &findings.candidates})
-        for (const Finding& finding : *list)
-            byScore.emplace_back(finding, std::int32_t(byScore.size()));
-    const auto above = std::int32_t(findings.findings.size());
-    std::stable_sort(byScore.begin(), byScore.end(), [&](const auto& a, const auto& b) {
-        const bool aIsBelow = a.second >= above, bIsBelow = b.second >= above;
-        return aIsBelow != bIsBelow ? bIsBelow : a.first.score > b.first.score;
-    });
-    std::vector<Finding> ordered;
-    for (auto& [finding, index] : byScore)
-        ordered.push_back(std::move(finding));
-    const FindingTissue tissue(findings.grid, ordered);
+    const RankedFindings ranked(findings);
     const glm::ivec2 size = painter.size();
     const std::size_t count = std::size_t(size.x) * std::size_t(size.y);
     std::vector<std::int32_t> ofPixel(count, -1);
@@ -107,19 +146,18 @@ std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findi
         for (std::size_t n = begin * std::size_t(size.x); n < end * std::size_t(size.x); ++n) {
             const auto place = painter.placeAt(std::int32_t(n));
             if (place && !painter.sight().isBridge(place->triangle))
-                ofPixel[n] = tissue.at(place->positionMm,
+                ofPixel[n] = ranked.at(place->positionMm,
                                        glm::dvec3(facets[std::size_t(place->triangle)].inward));
         }
     });
     // A conformal map shrinks a head on a long stalk to less than a pixel: then the pixels beside
     // its triangles, which a smooth paint's colour is made of, are its.
-    std::vector<bool> painted(ordered.size(), false);
+    std::vector<bool> painted(ranked.count(), false);
     for (const std::int32_t finding : ofPixel)
         if (finding >= 0) painted[std::size_t(finding)] = true;
+    const std::vector<std::int32_t> ofTriangle = ranked.ofTriangles(painter.sight());
     for (std::size_t t = 0; t < facets.size(); ++t) {
-        if (painter.sight().isBridge(int(t))) continue;
-        const int finding = tissue.at(painter.sight().originMm() + glm::dvec3(facets[t].middleMm),
-                                      glm::dvec3(facets[t].inward));
+        const std::int32_t finding = ofTriangle[t];
         if (finding < 0 || painted[std::size_t(finding)]) continue;
         const glm::dvec2 at = glm::dvec2(size) - glm::dvec2(facets[t].flat) * double(size.x) - 0.5;
         for (const glm::ivec2 step : {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
@@ -132,8 +170,7 @@ std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findi
     }
     std::vector<FindingPixel> pixels;
     for (std::size_t n = 0; n < count; ++n)
-        if (ofPixel[n] >= 0)
-            pixels.push_back({std::int32_t(n), byScore[std::size_t(ofPixel[n])].second});
+        if (ofPixel[n] >= 0) pixels.push_back({std::int32_t(n), ofPixel[n]});
     return pixels;
 }
 

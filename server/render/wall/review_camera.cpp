@@ -52,6 +52,7 @@ public:
                std::min(wanted, across ? shareOfWay * across->distanceMm : wanted) * direction);
     }
     const Camera& camera() const { return camera_; }
+    double shown() const { return std::max(best_, 0.0); }  ///< by it, mm² of what is sampled
 
 private:
     double shownBy(const Camera& camera) const {
@@ -80,19 +81,22 @@ private:
     double best_ = -1.0;
 };
 
-}  // namespace
+glm::dvec3 towardsCecum(const MissedPatch& patch, const Centerline& centerline) {
+    return centerline.points.empty() ? glm::dvec3(0, 0, 1)
+                                     : poseAtArc(centerline, patch.arcMm).tangent;
+}
 
-Camera reviewCamera(const WallSight& sight, const MissedPatch& patch,
-                    const Centerline& centerline) {
-    const bool hasPath = !centerline.points.empty();
+glm::dvec3 onPath(const Centerline& centerline, double arcMm) {
+    return poseAtArc(centerline, arcMm).point.positionMm;
+}
+
+Review reviewOf(const WallSight& sight, const MissedPatch& patch, const Centerline& centerline) {
     const glm::dvec3 inward = glm::length(patch.inward) > 0.5 ? patch.inward : glm::dvec3(0, 0, 1);
-    Review review(sight, patch,
-                  hasPath ? poseAtArc(centerline, patch.arcMm).tangent : glm::dvec3(0, 0, 1));
-    if (hasPath)
+    Review review(sight, patch, towardsCecum(patch, centerline));
+    if (!centerline.points.empty())
         for (double off = 0.0; off <= alongMm; off += alongStepMm)
             for (const double side : {-1.0, 1.0})
-                review.tryEye(poseAtArc(centerline, patch.arcMm + side * off).point.positionMm,
-                              pathsAdvantage);
+                review.tryEye(onPath(centerline, patch.arcMm + side * off), pathsAdvantage);
     review.tryBefore(inward);
     const glm::dvec3 a = anyAcross(inward), b = glm::cross(inward, a);
     for (const double slant : {25.0, 50.0})
@@ -102,7 +106,25 @@ Camera reviewCamera(const WallSight& sight, const MissedPatch& patch,
                              std::sin(glm::radians(slant)) *
                                  (std::cos(turn) * a + std::sin(turn) * b));
         }
-    return review.camera();
+    return review;
+}
+
+}  // namespace
+
+Camera reviewCamera(const WallSight& sight, const MissedPatch& patch,
+                    const Centerline& centerline) {
+    return reviewOf(sight, patch, centerline).camera();
+}
+
+std::optional<Camera> viewBesidePath(const WallSight& sight, const MissedPatch& patch,
+                                     const Centerline& centerline) {
+    if (centerline.points.empty() || patch.triangles.empty()) return {};
+    Review fromPath(sight, patch, towardsCecum(patch, centerline));
+    fromPath.tryEye(onPath(centerline, patch.arcMm));
+    const Review best = reviewOf(sight, patch, centerline);
+    constexpr double enough = 0.5;
+    if (fromPath.shown() >= enough * best.shown()) return {};
+    return best.camera();
 }
 
 }  // namespace haustra::render

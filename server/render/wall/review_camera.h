@@ -1,10 +1,12 @@
-// From where a patch of the wall that was missed is seen.
+// From where a patch of the wall is seen: one that was missed, or a finding.
 #pragma once
 
 #include "core/camera.h"
 #include "core/centerline.h"
 #include "core/missed_patches.h"
 #include "render/wall/wall_sight.h"
+
+#include <optional>
 
 namespace haustra::render {
 
@@ -16,5 +18,12 @@ namespace haustra::render {
 /// counts it, whatever the picture's size. Of equally good ones one on the path is taken. `patch`
 /// is of this wall. A millisecond or two.
 Camera reviewCamera(const WallSight& sight, const MissedPatch& patch, const Centerline& centerline);
+
+/// Of a patch that is to be looked at from the path, at its arc: reviewCamera, where a look at its
+/// centre from there shows less than half of what that shows, as a fold or a tube stands between,
+/// or the place lies on a fold's far side. None where it is seen from there, or from nowhere, or
+/// there is no path.
+std::optional<Camera> viewBesidePath(const WallSight& sight, const MissedPatch& patch,
+                                     const Centerline& centerline);
 
 }  // namespace haustra::render
