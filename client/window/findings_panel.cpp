@@ -164,8 +164,14 @@ void finishFirstPass(Reading& reading) {
 
 void goToNextFinding(Reading& reading, int step) {
     const reader::Reader& reader = reading.reader();
-    if (const auto* finding = reader.findings().next(step, reader.flight().placeArcMm()))
-        return jumpTo(reading, *finding);
+    double arcMm = reader.flight().placeArcMm();
+    // From beside the path another loop's may be nearer.
+    if (const auto* here = reader.findings().current();
+        here && here->view &&
+        glm::distance(here->view->positionMm, reader.flight().camera().positionMm) <=
+            reader::FindingsReading::besideMm)
+        arcMm = here->wall.arcMm;
+    if (const auto* finding = reader.findings().next(step, arcMm)) return jumpTo(reading, *finding);
     const auto& list = reader.session().findings();
     const QString why = whyNone(reader.session());
     reading.tell(!why.isEmpty() ? why
@@ -297,11 +303,11 @@ void FindingsPanel::look() {
     const DetectionChoice& choice = findings.choice();
     least_->setEnabled(has && candidates_->isChecked());
     const bool waits = choice.mode == DetectionMode::secondReader && !choice.firstPassDone;
+    list_->setEnabled(has);
     // What is hidden leaves the keyboard to the next control, which Space would press.
     if (!waits && firstPass_->hasFocus()) list_->setFocus();
     firstPass_->setVisible(waits);
     firstPass_->setEnabled(has && !choice.firstPassDone);
-    list_->setEnabled(has);
     const bool measures = has && findings.current();
     if (measure_->isEnabled() != measures) measure_->setEnabled(measures);
     if (!isVisible()) return;

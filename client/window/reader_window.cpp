@@ -620,7 +620,8 @@ void ReaderWindow::keepKeysOnPanes() {
     const QWidget* focused = QApplication::focusWidget();
     for (const QDockWidget* dock : docks_.all())
         if (focused && dock->isVisible() && dock->isAncestorOf(focused)) return;
-    focusPane(nullptr);
+    // Of a floating one that goes, the pane that had them before.
+    focusPane(qobject_cast<Pane*>(focusWidget()));
 }
 bool ReaderWindow::showsBookmarks() const {
     return docks_.bookmarks->isVisible();

@@ -199,7 +199,8 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
         std::vector<double> hus;
         for (const std::uint32_t sample : wall.samples)
             if (const double mm = thickness[sample / stride];
-                sample % stride == 0 && mm >= thickMm && mm != unbounded)
+                sample % stride == 0 && mm >= thickMm && mm != unbounded &&
+                !evidence.unseen[sample] && !evidence.untagged[sample])
                 hus.push_back(huBehind(evidence, sample, 0.5 * mm));
         wall.middleHu = hus.empty() ? evidence.statistics.wallHu : medianOf(hus);
     }

@@ -265,6 +265,10 @@ private:
                 areaMm2 += grid_.voxelVolumeMm3() / grid_.spacingMm()[axis];
                 voxels.push_back(wall);
             });
+            std::sort(voxels.begin(), voxels.end());
+            voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+            for (const std::size_t n : voxels)
+                ++closings_[n];
             if (orifice.openMm2 <= 0.0) continue;
             if (a && b) loopWalls_.push_back({result_.walls.size(), std::move(voxels)});
             result_.walls.push_back({orifice.placeMm, areaMm2, orifice.radiusMm, a && b});
@@ -637,46 +641,58 @@ private:
     }
 
     // From one of two loops that touch, the colon leads to the other: a wall that parts it is not
-    // between loops, but where a head or a fold leaves little room. Of the walls that the largest
-    // body and others face, the one through which the largest ball passes is opened; false: none.
+    // between loops, but where a head or a fold leaves little room. Of the walls that face both the
+    // largest body and another as large as parts of the colon are, the one through which the
+    // largest ball passes is opened; false: none.
     bool openAWallAgain() {
-        const std::vector<bool> largest = largestBody();
+        const Bodies bodies = bodiesOfLabels();
         const LoopWall* widest = nullptr;
         for (const LoopWall& wall : loopWalls_) {
-            bool faces = false, facesOthers = false;
+            bool facesLargest = false, facesPart = false;
             for (const std::size_t n : wall.voxels)
                 visitFaces(grid_, n, [&](std::size_t m, int) {
-                    if (labels_[m] != outside) (largest[m] ? faces : facesOthers) = true;
+                    const std::int32_t body = bodies.at[m];
+                    facesLargest |= body == bodies.largest;
+                    facesPart |= body >= 0 && body != bodies.largest &&
+                                 bodies.ml[std::size_t(body)] >= leastPartedMl;
                 });
-            if (faces && facesOthers &&
+            if (facesLargest && facesPart &&
                 (!widest ||
                  result_.walls[wall.wall].radiusMm > result_.walls[widest->wall].radiusMm))
                 widest = &wall;
         }
         if (!widest) return false;
         for (const std::size_t n : widest->voxels)
-            if (isKept(cut_.pieceAt[n])) labels_[n] = labelOf(n), barred_[n] = false;
+            if (labels_[n] == outside && isKept(cut_.pieceAt[n]) && --closings_[n] == 0)
+                labels_[n] = labelOf(n), barred_[n] = false;
         const std::size_t opened = widest->wall;
         result_.walls[opened].openedAgain = true;
         std::erase_if(loopWalls_, [&](const LoopWall& wall) { return wall.wall == opened; });
         return true;
     }
-    std::vector<bool> largestBody() const {
-        std::vector<bool> met(labels_.size(), false), largest(labels_.size(), false);
-        std::vector<std::size_t> most;
+    struct Bodies {
+        std::vector<std::int32_t> at;  // of each voxel; −1: outside
+        std::vector<double> ml;
+        std::int32_t largest = -1;
+    };
+    Bodies bodiesOfLabels() const {
+        Bodies bodies;
+        bodies.at.assign(labels_.size(), -1);
         for (std::size_t n = 0; n < labels_.size(); ++n) {
-            if (labels_[n] == outside || met[n]) continue;
-            std::vector<std::size_t> body{n};
-            met[n] = true;
-            floodFill(body, faceNeighbours(grid_), [&](std::size_t m) {
-                if (labels_[m] == outside || met[m]) return false;
-                return met[m] = true, true;
+            if (labels_[n] == outside || bodies.at[n] >= 0) continue;
+            const auto body = std::int32_t(bodies.ml.size());
+            std::vector<std::size_t> voxels{n};
+            bodies.at[n] = body;
+            floodFill(voxels, faceNeighbours(grid_), [&](std::size_t m) {
+                if (labels_[m] == outside || bodies.at[m] >= 0) return false;
+                bodies.at[m] = body;
+                return true;
             });
-            if (body.size() > most.size()) most = std::move(body);
+            bodies.ml.push_back(double(voxels.size()) * grid_.voxelVolumeMm3() / 1000.0);
+            if (bodies.largest < 0 || bodies.ml.back() > bodies.ml[std::size_t(bodies.largest)])
+                bodies.largest = body;
         }
-        for (const std::size_t n : most)
-            largest[n] = true;
-        return largest;
+        return bodies;
     }
 
     const Volume<std::int16_t>& hu_;
@@ -699,8 +715,9 @@ private:
     std::set<int> cuts_;                                      ///< orifices that the chain closes
     struct LoopWall {
         std::size_t wall = 0;             // of result_.walls
-        std::vector<std::size_t> voxels;  // that became wall; one may stand twice
+        std::vector<std::size_t> voxels;  // that became wall
     };
+    std::unordered_map<std::size_t, int> closings_;  // of a voxel that became wall: of how many
     std::vector<LoopWall> loopWalls_;
     static constexpr double leastPartedMl = 10.0;       // a centimetre of colon
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted

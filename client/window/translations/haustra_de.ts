@@ -1098,7 +1098,7 @@
     </message>
     <message>
         <source>an opening of %1 mm2 was kept, as without it the colon is parted: a polyp or a fold may stand in the way, or two loops touch, at %2</source>
-        <translation>Eine Öffnung von %1 mm2 blieb, da das Kolon ohne sie geteilt ist: Ein Polyp oder eine Falte kann im Weg stehen, oder zwei Schlingen berühren sich, bei %2</translation>
+        <translation>Eine Öffnung von %1 mm² blieb, da das Kolon ohne sie geteilt ist: Ein Polyp oder eine Falte kann im Weg stehen, oder zwei Schlingen berühren sich, bei %2</translation>
     </message>
     <message>
         <source>%1 ml of the colon are joined to nothing, and were left out</source>
