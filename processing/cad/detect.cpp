@@ -255,11 +255,10 @@ void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
 void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, int threads,
                       Findings& findings, std::vector<Finding>& made) {
     const auto segments = segmentsAlong(colon.centerline, colon.pieces);
-    std::vector<AnnularWall> fluid;
-    double fluidMm = 0.0, fluidHu = 0.0;
+    double fluidMm = 0.0, fluidFromMm = 0.0, fluidHu = 0.0;
     for (const AnnularWall& wall : annularWalls(colon, evidence, threads)) {
         if (isFluid(wall, evidence.statistics)) {
-            fluid.push_back(wall);
+            if (fluidMm == 0.0) fluidFromMm = wall.fromMm;
             fluidMm += wall.lengthMm(), fluidHu = std::max(fluidHu, wall.middleHu);
             continue;
         }
@@ -274,11 +273,11 @@ void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, 
         // Whatever point a model operates at: it has not weighed this.
         made.back().score = std::max(annularScore, findings.operatingPoint);
     }
-    if (!fluid.empty())
+    if (fluidMm > 0.0)
         findings.warnings.push_back(printed(
             "on %.0f mm of the colon, from %.0f mm on, nothing is told of how thick the wall is: "
             "%.0f HU at most behind it are fluid's, around the colon or in a wall that is swollen",
-            fluidMm, fluid.front().fromMm, fluidHu));
+            fluidMm, fluidFromMm, fluidHu));
 }
 
 void warnOfMasses(Findings& findings) {

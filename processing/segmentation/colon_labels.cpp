@@ -719,7 +719,6 @@ private:
     };
     std::unordered_map<std::size_t, int> closings_;  // of a voxel that became wall: of how many
     std::vector<LoopWall> loopWalls_;
-    static constexpr double leastPartedMl = 10.0;       // a centimetre of colon
     std::vector<std::pair<std::uint32_t, int>> faces_;  ///< first voxel, inner orifice; sorted
     ColonLabels result_;
     std::span<std::uint8_t> labels_;

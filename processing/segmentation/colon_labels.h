@@ -20,6 +20,9 @@ struct RebuiltWall {
     bool openedAgain = false;   ///< it parted the colon, and so was no wall
 };
 
+/// What is parted from the rest of the colon is more than a crumb of it: a centimetre of colon.
+inline constexpr double leastPartedMl = 10.0;
+
 struct LabelOptions {
     double bridgeRadiusMm = 1.5;
     bool asGiven = false;  ///< the contents end where they end: no fit to HU, no stool added

@@ -1,6 +1,7 @@
 #include "segmentation/course_doubts.h"
 
 #include "core/printed_text.h"
+#include "segmentation/colon_labels.h"
 
 #include <algorithm>
 #include <array>
@@ -71,8 +72,7 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
         if (cut.insert(end.part).second)
             doubt(0.5, printed("the %s goes on beyond the edge of the scan", toString(end.part)));
     }
-    constexpr double muchStrandedMl = 10.0;  // a centimetre of colon
-    if (record.strandedMl >= muchStrandedMl)
+    if (record.strandedMl >= leastPartedMl)
         doubt(0.9, printed("%.0f ml of the colon are joined to nothing, and were left out",
                            record.strandedMl));
     if (isAnothersMask(record))
