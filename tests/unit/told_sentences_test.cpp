@@ -23,16 +23,24 @@ namespace fs = std::filesystem;
 
 const QRegularExpression placeholder(QStringLiteral("%\\d"));
 
-// The literals of the sources, those that stand one after another joined; whatever is put into one
-// is a '\1'.
-QString literalsOfSources() {
+fs::path sources() {
+    return std::getenv("HAUSTRA_SOURCE");
+}
+
+std::string textOfStages() {
     std::string all;
-    for (const auto& entry :
-         fs::recursive_directory_iterator(fs::path(std::getenv("HAUSTRA_SOURCE")) / "processing"))
+    for (const auto& entry : fs::recursive_directory_iterator(sources() / "processing"))
         if (entry.path().extension() == ".cpp") all += readTextFile(entry.path()).value() + "\n";
-    all += readTextFile(fs::path(std::getenv("HAUSTRA_SOURCE")) / "server/cli/cad_command.cpp")
-               .value();
-    QString text = QString::fromStdString(all);
+    return all;
+}
+std::string textOfCadCommand() {
+    return readTextFile(sources() / "server/cli/cad_command.cpp").value();
+}
+
+// A source's text with the literals that stand one after another joined; whatever is put into one
+// is a '\1'.
+QString withJoinedLiterals(const std::string& source) {
+    QString text = QString::fromStdString(source);
     text.replace(QRegularExpression(QStringLiteral("\"\\s*\"")), QString());
     text.replace(QRegularExpression(QStringLiteral("%(?:\\.\\d)?(?:zu|[dfgs])|\\{\\}")),
                  QStringLiteral("\1"));
@@ -63,6 +71,31 @@ QString restThatNobodyTells(const QString& sentence, const QString& told) {
     return {};
 }
 
+// The arguments of each call, in the sources' text, by which a stage warns or doubts.
+QStringList callsThatWarn(const QString& told) {
+    static const QRegularExpression call(
+        QStringLiteral("\\b(?:warnings\\.push_back|say|doubt)\\(")),
+        quoted(QStringLiteral("\"(?:[^\"\\\\\n]|\\\\.)*\""));
+    const QRegularExpressionMatch no;
+    QStringList calls;
+    for (auto found = call.globalMatch(told); found.hasNext();) {
+        const qsizetype from = found.next().capturedEnd();
+        int open = 1;
+        qsizetype at = from;
+        while (open > 0 && at < told.size()) {
+            const auto literal = told[at] == u'"' ? quoted.match(told, at) : no;
+            if (literal.hasMatch()) {
+                at = literal.capturedEnd();
+                continue;
+            }
+            open += told[at] == u'(' ? 1 : told[at] == u')' ? -1 : 0;
+            ++at;
+        }
+        calls += told.sliced(from, at - from);
+    }
+    return calls;
+}
+
 QString translated(const std::string& told) {
     return translatedSentence(QString::fromStdString(told));
 }
@@ -79,7 +112,7 @@ private:
 };
 
 TEST_F(ToldSentences, AreThoseThatTheSourcesHave) {
-    const QString told = literalsOfSources();
+    const QString told = withJoinedLiterals(textOfStages() + textOfCadCommand());
     for (QString sentence : knownSentences()) {
         // A model's file has its numbers written out.
         if (sentence.contains(QStringLiteral("haustra phantom"))) continue;
@@ -90,6 +123,27 @@ TEST_F(ToldSentences, AreThoseThatTheSourcesHave) {
                   .toStdString(),
               "tiny ones")
         << "a word that has changed is seen";
+}
+
+// A warning that is new has to be known, too.
+TEST_F(ToldSentences, AreAllByWhichAStageWarns) {
+    constexpr qsizetype least = 12;  // shorter stretches join sentences, or are words of their own
+    static const QRegularExpression quoted(QStringLiteral("\"((?:[^\"\\\\\n]|\\\\.)*)\""));
+    QString known = knownSentences().join(u'\n');
+    known.replace(placeholder, QStringLiteral("\1"));
+    int stretches = 0;
+    for (const QString& call : callsThatWarn(withJoinedLiterals(textOfStages()))) {
+        for (auto literal = quoted.globalMatch(call); literal.hasNext();) {
+            for (const QString& stretch : literal.next().captured(1).split(u'\1')) {
+                if (stretch.size() < least) continue;
+                ++stretches;
+                EXPECT_TRUE(known.contains(stretch)) << stretch.toStdString();
+            }
+        }
+    }
+    EXPECT_GE(stretches, 60) << "that many there were when this was written";
+    EXPECT_EQ(callsThatWarn(QStringLiteral("say(f(1, \"a)\") + g()); no(\"b\")")),
+              QStringList{QStringLiteral("f(1, \"a)\") + g())")});
 }
 
 TEST_F(ToldSentences, AreGermanWithTheirNumbers) {
