@@ -128,6 +128,49 @@ TEST(ColonLabels, AWallThatPartsTheColonIsNone) {
     }
 }
 
+// A loop from x = 2 around to x = 37 and back, whose limbs touch at y = 25 in a wide gap at its
+// far end, and beyond x = 38 a part that a narrow gap joins and nothing else.
+Scene loopAndPart() {
+    Scene scene = emptyScene();
+    const Grid& grid = scene.hu.grid();
+    Volume<std::uint8_t> walls(grid, std::uint8_t(0));
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const glm::ivec3 v = grid.voxelAt(n);
+        if (v.x < 2 || v.x >= 58 || v.y < 5 || v.y >= 45 || v.z < 5 || v.z >= 35) continue;
+        if (v.x >= 14 && v.x < 27 && std::abs(v.y - 25) < 2) continue;
+        const bool ofLimbs = v.x < 14 && v.y == 25 && std::abs(v.z - 20) > 6,
+                   ofPart = v.x == 38 && (std::abs(v.y - 25) > 3 || std::abs(v.z - 20) > 3);
+        const bool isWall = ofLimbs || ofPart;
+        scene.hu.writable()[n] = isWall ? -600 : -1000;
+        scene.contents.content.writable()[n] = std::uint8_t(Content::gas);
+        walls.writable()[n] = isWall;
+    }
+    chainUp(scene, walls, [](const Orifice& o) { return o.placeMm.x > 20 && o.placeMm.x < 36; });
+    return scene;
+}
+
+TEST(ColonLabels, OnlyTheWallThatPartsTheColonIsOpened) {
+    const ColonLabels laid = labelsOf(loopAndPart());
+    ASSERT_EQ(laid.walls.size(), 2u);
+    for (const RebuiltWall& wall : laid.walls) {
+        const bool ofPart = wall.placeMm.x > 30;
+        EXPECT_TRUE(wall.betweenLoops);
+        EXPECT_EQ(wall.openedAgain, ofPart) << "though the other's hole is wider";
+        EXPECT_EQ(wall.radiusMm < 5, ofPart);
+    }
+    EXPECT_NE(laid.labels.at({48, 14, 20}), std::uint8_t(LumenLabel::outside));
+    EXPECT_LT(laid.strandedMl, 0.1);
+    // The limbs stay apart: no column through their gap is lumen all the way.
+    for (int x = 3; x < 13; ++x) {
+        for (int z = 14; z <= 26; ++z) {
+            int lumen = 0;
+            for (int y = 22; y < 29; ++y)
+                lumen += laid.labels.at({x, y, z}) != std::uint8_t(LumenLabel::outside);
+            EXPECT_LT(lumen, 7) << x << ' ' << z;
+        }
+    }
+}
+
 TEST(ColonLabels, PartialVolumeBetweenGasAndItsFluidIsLumen) {
     EXPECT_EQ(labelledBetween(2, true), 30 * 2);
 }
