@@ -28,9 +28,7 @@ void BiopsyLens::open(std::shared_ptr<const CaseInfo> info) {
     case_ = std::move(info);
     preset_ = presetOf(*case_);
     openSide_ = 0;
-    askedCamera_.reset();
-    asked_.clear();
-    picture_ = {};
+    forgetPicture();
     owes_ = false;
 }
 
@@ -48,6 +46,10 @@ void BiopsyLens::close() {
     // A link that came back may be to a server that has no lens.
     if (session_.serverCan(protocol::capability::lens))
         session_.setViewport(viewport, View::endoscopic, 0, 0, true);
+    forgetPicture();
+}
+
+void BiopsyLens::forgetPicture() {
     askedCamera_.reset();
     asked_.clear();
     picture_ = {};
@@ -78,7 +80,7 @@ void BiopsyLens::update(const Camera& wanted, const Camera* shown, glm::ivec2 pa
     // Until the picture beneath stands still, all of the server's time is its own.
     if (!shown || *shown != wanted) return;
     const auto camera = cameraOfLens(wanted, place_);
-    if (!camera) return;
+    if (!camera) return forgetPicture();  // its middle is beyond a fisheye's rim
     const int pixels = int(std::ceil(2.2 * place_.radius * pane.y / sideStep)) * sideStep;
     const int side = std::clamp(pixels, int(protocol::minViewportPixels), mostLensPixels);
     if (side != openSide_) {

@@ -65,6 +65,7 @@ public:
 
 private:
     void close();
+    void forgetPicture();
 
     struct Asked {
         std::uint64_t sequence;

@@ -7,6 +7,7 @@ namespace {
 
 // Farther from the wall than this, a place is not drawn on the flattened one.
 constexpr double onWallMm = 4.0;
+constexpr double leastMm = 0.1;
 
 }  // namespace
 
@@ -78,6 +79,8 @@ void PlaceRulers::add(const PlaceRuler::End& end) {
         begun_ = end;
         return;
     }
+    // Two clicks on one place measure nothing: the second end is still to come.
+    if (glm::distance(begun_->positionMm, end.positionMm) < leastMm) return;
     add(PlaceRuler{*std::exchange(begun_, std::nullopt), end});
 }
 

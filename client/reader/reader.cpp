@@ -36,6 +36,7 @@ void Reader::update(double seconds) {
     slices_.follow(flight_.camera().positionMm);
     measures_.update();
     rulers_.update();
+    updateSeenEnds();
     missed_.update(Clock::now());
     sendWindow();
     sendOptics(Clock::now());
@@ -63,6 +64,7 @@ void Reader::caseOpened() {
     findings_.open();
     missed_.open();
     rulers_.reset();
+    seenEnds_.reset();
     panes_.clear();
     optics_.offer(case_->presets);
     sentOptics_ = seenOptics_ = optics_.revision();
@@ -155,8 +157,8 @@ void Reader::sendOptics(Clock::time_point now) {
 bool Reader::restless() const {
     if (!case_ || session_.phase() != Phase::open) return false;
     return motion() != Motion::paused || flat_.wall().waits() || measures_.waits() ||
-           rulers_.waits() || opticsChangedAt_ || optics_.revision() != sentOptics_ ||
-           panes_.owe() || lens_.owes();
+           rulers_.waits() || seenEnds_.waits() || opticsChangedAt_ ||
+           optics_.revision() != sentOptics_ || panes_.owe() || lens_.owes();
 }
 
 Motion Reader::motion() const {
@@ -187,6 +189,15 @@ std::vector<PlaceRuler> Reader::shownRulers() const {
         return !finding || !ruler.isOf(*finding);
     });
     return shown;
+}
+
+void Reader::updateSeenEnds() {
+    std::vector<glm::dvec3> ends;
+    for (const PlaceRuler& ruler : shownRulers())
+        ends.insert(ends.end(), {ruler.from.positionMm, ruler.to.positionMm});
+    if (rulers_.begun()) ends.push_back(rulers_.begun()->positionMm);
+    const Camera* pictured = panes_.shown<Camera>(View::endoscopic);
+    seenEnds_.update(pictured && *pictured == flight_.camera() ? pictured : nullptr, ends);
 }
 
 void Reader::goTo(const ListedFinding& finding) {

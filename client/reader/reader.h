@@ -11,6 +11,7 @@
 #include "reader/panes.h"
 #include "reader/place_rulers.h"
 #include "reader/scan_measures.h"
+#include "reader/seen_ends.h"
 #include "reader/slice_views.h"
 
 #include <memory>
@@ -68,6 +69,8 @@ public:
     const PlaceRulers& rulers() const { return rulers_; }
     /// Rulers without those of findings that the mode of detection hides.
     std::vector<PlaceRuler> shownRulers() const;
+    /// Which of their ends, and of the one that is begun, no wall hides in the endoscopic view.
+    const SeenEnds& seenEnds() const { return seenEnds_; }
     /// How the wall is drawn: what is made of it is shown in the endoscopic view while it changes,
     /// and in the flattened ones when it rests.
     OpticsEditor& optics() { return optics_; }
@@ -106,6 +109,7 @@ public:
 
 private:
     void caseOpened();
+    void updateSeenEnds();
     void sendWindow();
     void sendOptics(Clock::time_point now);
 
@@ -120,6 +124,7 @@ private:
     FindingsReading findings_{session_};
     MissedReading missed_{session_};
     PlaceRulers rulers_{session_, flat_.wall()};
+    SeenEnds seenEnds_{session_, flat_.wall()};
     OpticsEditor optics_;
     Panes panes_{session_};
 

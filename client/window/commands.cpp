@@ -119,9 +119,18 @@ void resizeLens(ReaderWindow& w, double factor) {
     if (lens.isOn()) lens.setRadius(lens.place().radius * factor);
 }
 
+// The first end of a ruler is no step yet.
+void undo(ReaderWindow& w) {
+    if (w.reader().rulers().begun())
+        w.reader().rulers().giveUp();
+    else
+        w.reading().undoStack().undo();
+}
+
 // One thing at a time, the nearest first.
 void stop(ReaderWindow& w) {
     if (w.showsCases()) return w.showCases();
+    if (w.reader().rulers().begun()) return w.reader().rulers().giveUp();
     if (w.reading().tool() != DrawingTool::none) return w.reading().setTool(DrawingTool::none);
     if (w.pointsByKeys()) return w.togglePointing();
     if (w.reader().lens().isOn()) return w.reader().lens().setOn(false);
@@ -168,7 +177,7 @@ const std::array table = {
             .menu = Menu::edit,
             .text = QT_TRANSLATE_NOOP("Commands", "Undo"),
             .keys = "Ctrl+Z",
-            .run = [](ReaderWindow& w) { w.reading().undoStack().undo(); }},
+            .run = undo},
     Command{.id = "redo",
             .menu = Menu::edit,
             .text = QT_TRANSLATE_NOOP("Commands", "Redo"),
@@ -911,7 +920,10 @@ void CommandSet::look() {
     actions_.at("connect-again")
         ->setEnabled(window_.reader().session().phase() == reader::Phase::failed);
     const QUndoStack& stack = window_.reading().undoStack();
-    for (const auto& [id, can, what] : {std::tuple{"undo", stack.canUndo(), stack.undoText()},
+    const bool begun = open && window_.reader().rulers().begun();
+    const QString undone =
+        begun ? QCoreApplication::translate("Commands", "first end of a ruler") : stack.undoText();
+    for (const auto& [id, can, what] : {std::tuple{"undo", begun || stack.canUndo(), undone},
                                         std::tuple{"redo", stack.canRedo(), stack.redoText()}}) {
         action(id)->setEnabled(open && can);
         const QString name =

@@ -44,6 +44,11 @@ void EndoscopicPane::addShown(Shown& shown) const {
     shown.add(flight.yawDegrees()), shown.add(flight.pitchDegrees());
     if (const auto& picked = reader().flat().picked()) shown.add(picked->positionMm);
     addRulersAndFindings(shown);
+    for (const reader::PlaceRuler& ruler : reader().shownRulers())
+        for (const reader::PlaceRuler::End* end : {&ruler.from, &ruler.to})
+            shown.add(reader().seenEnds().has(shownCamera(), end->positionMm));
+    if (const auto& begun = reader().rulers().begun())
+        shown.add(reader().seenEnds().has(shownCamera(), begun->positionMm));
     shown.add(int(reading().tool()));
     const reader::BiopsyLens& lens = reader().lens();
     shown.add(lens.isOn() + 2 * lens.isAvailable() + 4 * lens.isExact());
@@ -64,24 +69,28 @@ void EndoscopicPane::paintMarks(QPainter& painter) {
     paintBadge(painter);
 }
 
-// Of what is far away the wall hides most, and a length says little.
+// Dashed where a wall stands before one of the ends; where one does before both, not at all.
 void EndoscopicPane::paintRulers(QPainter& painter) {
-    constexpr double farMm = 40.0;
     const Camera camera = shownCamera();
     const auto positionOf = [&](glm::dvec3 placeMm) -> std::optional<QPointF> {
-        if (glm::distance(camera.positionMm, placeMm) > farMm) return std::nullopt;
         const auto seen = reader::seenAt(camera, placeMm);
         if (!seen) return std::nullopt;
         return pictureArea().center() + pictureArea().height() * point(*seen);
     };
+    const auto isSeen = [&](glm::dvec3 placeMm) {
+        return reader().seenEnds().has(camera, placeMm);
+    };
     painter.setFont(font());
+    RulerTexts rulers(painter, rect());
     for (const reader::PlaceRuler& ruler : reader().shownRulers()) {
         const auto from = positionOf(ruler.from.positionMm), to = positionOf(ruler.to.positionMm);
-        if (from && to && (rect().contains(from->toPoint()) || rect().contains(to->toPoint())))
-            paintRuler(painter, rect(), *from, *to, false, textOf(ruler));
+        const bool seesFrom = isSeen(ruler.from.positionMm), seesTo = isSeen(ruler.to.positionMm);
+        if (from && to && (seesFrom || seesTo) &&
+            (rect().contains(from->toPoint()) || rect().contains(to->toPoint())))
+            rulers.paint(*from, *to, !(seesFrom && seesTo), textOf(ruler));
     }
     if (const auto& begun = reader().rulers().begun())
-        if (const auto at = positionOf(begun->positionMm))
+        if (const auto at = positionOf(begun->positionMm); at && isSeen(begun->positionMm))
             paintCross(painter, *at, 3.0, 8.0, theme().measuredOnPicture);
 }
 
@@ -192,7 +201,7 @@ void EndoscopicPane::paintLens(QPainter& painter) {
                                          : theme().bookmarkOnPicture,
                         1.5 * theme().lineWidth, picture ? Qt::SolidLine : Qt::DashLine));
     painter.drawEllipse(ring);
-    paintLensCaption(painter, ring);
+    if (picture || !lens.isAvailable()) paintLensCaption(painter, ring);
 }
 
 // Beneath the ring, or above it where there is no room; what the colours mean, and whose they are.
@@ -262,6 +271,7 @@ void EndoscopicPane::clicked(const Hand& hand) {
 }
 
 void EndoscopicPane::doubleClicked(const Hand&) {
+    if (reading().tool() == DrawingTool::ruler) return;  // its first click has set an end
     takeClickBack();
     reader().flight().resetLook();
 }

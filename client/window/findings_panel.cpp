@@ -17,7 +17,6 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QSettings>
 #include <QSpinBox>
 #include <QTreeWidget>
 #include <QVBoxLayout>
@@ -30,7 +29,6 @@ namespace {
 
 constexpr int numberRole = Qt::UserRole;
 constexpr int leastRows = 4;  // of the list in sight
-constexpr auto modeSetting = "reading/detection";
 constexpr DetectionMode modes[] = {DetectionMode::off, DetectionMode::secondReader,
                                    DetectionMode::concurrent};
 
@@ -148,7 +146,7 @@ void chooseDetection(Reading& reading, DetectionMode mode) {
         return reading.changed();
     const auto done = reading.reader().findings().choose(mode);
     if (done) {
-        QSettings().setValue(QLatin1String(modeSetting), int(mode));
+        reading.setNextDetection(mode);
         reading.tell(FindingsPanel::tr("Findings: %1").arg(nameOf(mode)));
     }
     tellRefusal(reading, done);
@@ -185,7 +183,9 @@ void goToNextFinding(Reading& reading, int step) {
 
 void measureFinding(Reading& reading) {
     const reader::ListedFinding* finding = reading.reader().findings().current();
-    if (!finding) return reading.tell(FindingsPanel::tr("Go to a finding first."));
+    const QString why = whyNone(reading.reader().session());
+    if (!finding)
+        return reading.tell(why.isEmpty() ? FindingsPanel::tr("Go to a finding first.") : why);
     reading.reader().rulers().measure(*finding);
     reading.changed();
 }
@@ -193,7 +193,7 @@ void measureFinding(Reading& reading) {
 FindingsPanel::FindingsPanel(Reading& reading)
     : reading_(reading),
       mode_(new ModeBox),
-      firstPass_(new QPushButton(tr("First reading done: show findings"))),
+      firstPass_(new QPushButton(tr("First reading done:\nshow findings"))),
       measure_(new QPushButton(tr("Measure"))),
       candidates_(new QCheckBox(tr("also those from"))),
       least_(new ThresholdBox),
@@ -279,13 +279,10 @@ FindingsPanel::FindingsPanel(Reading& reading)
     connect(&reading, &Reading::stepped, this, &FindingsPanel::look);
     connect(&reading, &Reading::readerReplaced, this, [this] { shownRevision_ = 0; });
     connect(&reading, &Reading::caseOpened, this, [this] {
-        // Of a case that is open again, as before a lost link, its own mode stays: the kept one may
-        // be that of another window.
+        // Of a case that is open again, as before a lost link, its own mode stays.
         reader::FindingsReading& findings = reading_.reader().findings();
-        const int kept = QSettings().value(QLatin1String(modeSetting)).toInt();
-        if (findings.has() && findings.choice().mode == DetectionMode::off && kept > 0 &&
-            kept < int(std::size(modes)))
-            (void)findings.choose(modes[kept]);
+        if (findings.has() && findings.choice().mode == DetectionMode::off)
+            (void)findings.choose(reading_.nextDetection());
         shownRevision_ = 0;
     });
     look();

@@ -88,6 +88,7 @@ void paintFindings(QPainter& painter, const reader::Reader& reader, const FlatAr
 // Rulers whose ends lie on the wall, by the shorter way round.
 void paintRulers(QPainter& painter, const reader::Reader& reader, const FlatArea& flat,
                  bool withText) {
+    RulerTexts rulers(painter, flat.area);
     for (const reader::PlaceRuler& ruler : reader.shownRulers()) {
         if (!ruler.from.flat || !ruler.to.flat) continue;
         glm::dvec2 way = *ruler.to.flat - *ruler.from.flat;
@@ -95,8 +96,8 @@ void paintRulers(QPainter& painter, const reader::Reader& reader, const FlatArea
         const QPointF across =
             flat.position(*ruler.from.flat + way) - flat.position(*ruler.from.flat);
         flat.forEachCopy(*ruler.from.flat, [&](QPointF from) {
-            paintRuler(painter, flat.area, from, from + across, false,
-                       withText && flat.area.contains(from) ? textOf(ruler) : QString());
+            rulers.paint(from, from + across, false,
+                         withText && flat.area.contains(from) ? textOf(ruler) : QString());
         });
     }
     if (const auto& begun = reader.rulers().begun(); begun && begun->flat)
@@ -198,12 +199,16 @@ QPointF StripPane::dragFrom() const {
     return positionOf(layout().pixelFromFlat(reader().flat().tour().window().center));
 }
 
+// Clicks and drags alike lead along the colon when they end; with the ruler, a click sets an end.
+void StripPane::clicked(const Hand& hand) {
+    if (hand.button != Qt::LeftButton || reading().tool() != DrawingTool::ruler) return;
+    setsEnd_ = true;
+    if (const auto flat = flatAt(hand.position)) reader().rulers().addEnd(*flat);
+    reading().changed();
+}
+
 void StripPane::released(const Hand& hand) {
-    if (hand.button != Qt::LeftButton) return;
-    if (reading().tool() == DrawingTool::ruler) {
-        if (const auto flat = flatAt(hand.position)) reader().rulers().addEnd(*flat);
-        return reading().changed();
-    }
+    if (std::exchange(setsEnd_, false) || hand.button != Qt::LeftButton) return;
     if (const auto flat = flatAt(hand.position))
         reading().jump(tr("go along the flattened colon"),
                        [this, flat = *flat] { reader().flat().goTo(flat, true); });
@@ -222,6 +227,14 @@ FlatZoomPane::FlatZoomPane(Reading& reading)
 
 namespace {
 
+void measureAgain(reader::WallQuestions& wall,
+                  const std::optional<reader::Measurement>& measurement) {
+    if (measurement)
+        wall.measure(measurement->points, measurement->closed);
+    else
+        wall.clearMeasurement();
+}
+
 FlatArea areaOf(const QWidget& pane, const reader::Reader& reader) {
     return {QRectF(pane.rect()), reader.flat().tour().window(), reader.flat().tour().paneSize()};
 }
@@ -233,10 +246,7 @@ void FlatZoomPane::fillMenu(QMenu& menu) {
         reader().flat().tour().showWholeCircumference();
         reading().changed();
     });
-    menu.addAction(tr("Clear the measurement"), this, [this] {
-        reader().flat().wall().clearMeasurement();
-        reading().changed();
-    });
+    menu.addAction(tr("Clear the measurement"), this, [this] { clearMeasurement(); });
 }
 
 void FlatZoomPane::addShown(Shown& shown) const {
@@ -357,6 +367,7 @@ void FlatZoomPane::pressed(const Hand& hand) {
     if (!reader().flat().hasStrip() || hand.button != Qt::LeftButton) return;
     const DrawingTool held = toolOf(hand);
     drawsOutline_ = held == DrawingTool::outline;
+    measuredBefore_ = reader().flat().wall().measurement();
     if (held != DrawingTool::none) drawing_.push_back(areaOf(*this, reader()).flat(hand.position));
 }
 
@@ -393,12 +404,21 @@ void FlatZoomPane::released(const Hand&) {
     if (drawing_.size() >= (drawsOutline_ ? 3u : 2u) && measurement) {
         reader::WallQuestions& wall = reader().flat().wall();
         reading().did(
-            tr("measure on the wall"), [&wall] { wall.clearMeasurement(); },
-            [&wall, points = measurement->points, closed = measurement->closed] {
-                wall.measure(points, closed);
-            });
+            tr("measure on the wall"),
+            [&wall, before = measuredBefore_] { measureAgain(wall, before); },
+            [&wall, made = measurement] { measureAgain(wall, made); });
     }
     drawing_.clear();
+}
+
+void FlatZoomPane::clearMeasurement() {
+    reader::WallQuestions& wall = reader().flat().wall();
+    const auto before = wall.measurement();
+    if (!before) return;
+    wall.clearMeasurement();
+    reading().did(
+        tr("clear the measurement"), [&wall, before] { measureAgain(wall, before); },
+        [&wall] { wall.clearMeasurement(); });
 }
 
 void FlatZoomPane::clicked(const Hand& hand) {
@@ -409,10 +429,15 @@ void FlatZoomPane::clicked(const Hand& hand) {
         reader().rulers().addEnd(flat);
         return reading().changed();
     }
-    reader().flat().wall().clearMeasurement();
     const glm::dvec2 flat = areaOf(*this, reader()).flat(hand.position);
-    reading().jump(tr("go to a place of the wall"),
-                   [this, flat] { reader().flat().goTo(flat, false); });
+    reader::WallQuestions& wall = reader().flat().wall();
+    reading().jump(
+        tr("go to a place of the wall"),
+        [this, flat, &wall] {
+            wall.clearMeasurement();
+            reader().flat().goTo(flat, false);
+        },
+        [&wall, before = wall.measurement()] { measureAgain(wall, before); });
 }
 
 void FlatZoomPane::wheeled(const Hand& hand, double steps) {

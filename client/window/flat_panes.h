@@ -27,12 +27,15 @@ protected:
     void paintMarks(QPainter& painter) override;
     void addShown(Shown& shown) const override;
     void dragged(const Hand& hand) override;
+    void clicked(const Hand& hand) override;
     void released(const Hand& hand) override;
     void hovered(const Hand& hand) override;
 
 private:
     StripLayout layout() const;
     std::optional<glm::dvec2> flatAt(QPointF position) const;
+
+    bool setsEnd_ = false;  // the click that is about to end has set a ruler's end
 };
 
 /// The window onto it. A click looks at that place in all views; a drag moves the wall, or with a
@@ -61,12 +64,14 @@ protected:
 
 private:
     void draw(glm::dvec2 flat, double leastStep);
+    void clearMeasurement();
     DrawingTool toolOf(const Hand& hand) const;
     void paintMeasurement(QPainter& painter);
     void paintTexts(QPainter& painter);
 
     std::vector<glm::dvec2> drawing_;  // flat, while the mouse draws a line or an outline
     bool drawsOutline_ = false;
+    std::optional<reader::Measurement> measuredBefore_;  // before the mouse draws
 };
 
 }  // namespace haustra::window

@@ -550,10 +550,10 @@ void paintPlaceMark(QPainter& painter, QPointF at) {
     }
 }
 
-void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to, bool dashed,
-                const QString& text) {
+void RulerTexts::paint(QPointF from, QPointF to, bool dashed, const QString& text) {
+    QPainter& painter = painter_;
     const QRectF around = QRectF(from, to).normalized().adjusted(-1, -1, 1, 1);
-    if (!around.intersects(area)) return;
+    if (!around.intersects(area_)) return;
     const QColor color = theme().measuredOnPicture;
     painter.setPen(QPen(theme().outline, 3.5));
     painter.drawLine(from, to);
@@ -564,13 +564,32 @@ void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to,
     for (const QPointF end : {from, to})
         painter.drawEllipse(end, 2.5, 2.5);
     if (text.isEmpty()) return;
-    const double wide = QFontMetricsF(painter.font()).horizontalAdvance(text) / 2 + 4;
-    const QPointF low((from.x() + to.x()) / 2, std::max(from.y(), to.y()) + 4);
-    outlinedText(
-        painter,
-        {std::clamp(low.x(), area.left() + wide, std::max(area.left() + wide, area.right() - wide)),
-         std::min(low.y(), area.bottom() - 24.0)},
-        Qt::AlignHCenter | Qt::AlignTop, color, text);
+    const QFontMetricsF metrics(painter.font());
+    const QSizeF size(metrics.horizontalAdvance(text), metrics.height());
+    constexpr double gap = 4.0;
+    const double left = around.center().x() - 0.5 * size.width(),
+                 middle = around.center().y() - 0.5 * size.height();
+    // Beneath first; where nothing is free, farther and farther beneath.
+    std::vector<QPointF> corners{{left, around.bottom() + gap},
+                                 {left, around.top() - gap - size.height()},
+                                 {around.right() + gap, middle},
+                                 {around.left() - gap - size.width(), middle}};
+    for (std::size_t n = 1; n <= texts_.size(); ++n)
+        corners.push_back({left, around.bottom() + gap + double(n) * size.height()});
+    QRectF box;
+    for (const QPointF corner : corners) {
+        box = QRectF(corner, size);
+        // The area's edges push it in; a higher text would still be cut.
+        box.moveLeft(
+            std::max(area_.left() + gap, std::min(box.left(), area_.right() - gap - size.width())));
+        box.moveTop(
+            std::max(area_.top(), std::min(box.top(), area_.bottom() - gap - size.height())));
+        if (std::ranges::none_of(texts_,
+                                 [&](const QRectF& other) { return other.intersects(box); }))
+            break;
+    }
+    texts_.push_back(box);
+    outlinedText(painter, box.topLeft(), Qt::AlignLeft | Qt::AlignTop, color, text);
 }
 
 QString textOf(const reader::PlaceRuler& ruler) {

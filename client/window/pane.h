@@ -191,10 +191,20 @@ void paintBookmarkFlag(QPainter& painter, QPointF foot);
 void outlinedPolyline(QPainter& painter, const QPolygonF& line, bool closed, const QColor& color);
 /// A line between two places, with its ends; dashed where it does not lie in the picture's plane.
 /// `text`, which may be empty, stands below it, within `area`.
-void paintRuler(QPainter& painter, const QRectF& area, QPointF from, QPointF to, bool dashed,
-                const QString& text);
 /// "8.2 mm", of a finding's diameter with its number.
 QString textOf(const reader::PlaceRuler& ruler);
+/// Rulers of a picture, each with its text beside it where that lies on no other's.
+class RulerTexts {
+public:
+    /// Texts stay within `area`.
+    RulerTexts(QPainter& painter, const QRectF& area) : painter_(painter), area_(area) {}
+    void paint(QPointF from, QPointF to, bool dashed, const QString& text);
+
+private:
+    QPainter& painter_;
+    QRectF area_;
+    std::vector<QRectF> texts_;
+};
 /// Rings of a picture's findings, each with its number beside it: at the first corner where it lies
 /// on no other number, and nowhere where there is none.
 class FindingRings {

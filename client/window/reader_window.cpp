@@ -152,9 +152,11 @@ ReaderWindow::ReaderWindow(Reading& reading)
         if (!trouble) statusBar()->showMessage(text, 4000);
     });
     connect(&reading, &Reading::toolChanged, this, [this] {
+        // The view from outside measures nothing.
         for (Pane* pane : panes_)
-            pane->setCursor(reading_.tool() == DrawingTool::none ? Qt::ArrowCursor
-                                                                 : Qt::CrossCursor);
+            pane->setCursor(reading_.tool() == DrawingTool::none || pane->view() == View::overview
+                                ? Qt::ArrowCursor
+                                : Qt::CrossCursor);
     });
     qApp->installEventFilter(this);
     setWindowTitle(QStringLiteral("Haustra"));

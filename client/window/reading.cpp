@@ -1,9 +1,11 @@
 #include "window/reading.h"
 
 #include "protocol/capabilities.h"
+#include "window/pane.h"
 
 #include <QLocale>
 #include <QLoggingCategory>
+#include <QSettings>
 #include <QTextDocument>
 #include <QUndoCommand>
 #include <algorithm>
@@ -18,6 +20,7 @@ using std::chrono::milliseconds;
 
 constexpr auto steadyInterval = milliseconds(15), idleInterval = milliseconds(250),
                mergeWithin = milliseconds(1000);
+constexpr auto detectionSetting = "reading/detection";
 
 // What the person who reads is told, for whoever reads the log instead:
 // QT_LOGGING_RULES=haustra.reading=true.
@@ -80,6 +83,9 @@ Reading::Reading(link::ConnectionOptions options, std::string caseName,
     connect(&steady_, &QTimer::timeout, this, &Reading::step);
     connect(&idle_, &QTimer::timeout, this, &Reading::step);
     undoStack_.setUndoLimit(100);
+    if (const int kept = QSettings().value(QLatin1String(detectionSetting)).toInt();
+        kept > 0 && kept <= int(DetectionMode::concurrent))
+        nextDetection_ = DetectionMode(kept);
     makeReader(std::move(caseName));
     sinceStep_.start();
     idle_.start();
@@ -194,6 +200,8 @@ void Reading::watchRulers() {
     did(
         tr("measure between two places"), [&rulers, before = *before] { rulers.set(before); },
         [&rulers, after = rulers.rulers()] { rulers.set(after); });
+    // Not every view has room for its length, or shows the place.
+    if (rulers.rulers().size() > before->size()) tell(textOf(rulers.rulers().back()));
 }
 
 void Reading::tell(const QString& text, bool trouble) {
@@ -224,14 +232,17 @@ std::function<void()> Reading::wayBack() {
     };
 }
 
-void Reading::jump(const QString& text, std::function<void()> go) {
+void Reading::jump(const QString& text, std::function<void()> go, std::function<void()> alsoBack) {
     reader::Reader& reader = *reader_;
     const auto goThere = [&reader, go = std::move(go)] {
         reader.setMotion(reader::Motion::paused);
         reader.flat().forgetPicked();  // an answer on its way would lead back
         go();
     };
-    const auto back = wayBack();
+    const auto back = [way = wayBack(), also = std::move(alsoBack)] {
+        way();
+        if (also) also();
+    };
     goThere();
     did(text, back, goThere);
 }
@@ -259,6 +270,11 @@ void Reading::clearMeasures() {
             if (onWall) wall.measure(onWall->points, onWall->closed);
         },
         clear);
+}
+
+void Reading::setNextDetection(DetectionMode mode) {
+    nextDetection_ = mode;
+    QSettings().setValue(QLatin1String(detectionSetting), int(mode));
 }
 
 void Reading::setTool(DrawingTool tool) {

@@ -44,11 +44,19 @@ public:
     QUndoStack& undoStack() { return undoStack_; }
     /// Brings flight and slices back to where they are now; what has been set since stays.
     std::function<void()> wayBack();
-    /// A jump of the flight that can be taken back, and done again by `go`.
-    void jump(const QString& text, std::function<void()> go);
+    /// A jump of the flight that can be taken back, and done again by `go`; `alsoBack` takes back
+    /// what else `go` does.
+    void jump(const QString& text, std::function<void()> go, std::function<void()> alsoBack = {});
 
     /// Rulers and ellipses on slices, and what was measured on the wall.
     void clearMeasures();
+
+    /// How findings are shown in the next case: as this window chose last, or, before it has, as
+    /// was chosen last when it began. What another window chooses meanwhile shows none here to
+    /// whoever is to read without them.
+    DetectionMode nextDetection() const { return nextDetection_; }
+    /// Kept for windows that begin later.
+    void setNextDetection(DetectionMode mode);
 
     DrawingTool tool() const { return tool_; }
     void setTool(DrawingTool tool);
@@ -93,6 +101,7 @@ private:
     QElapsedTimer sinceStep_;
     QUndoStack undoStack_;
     DrawingTool tool_ = DrawingTool::none;
+    DetectionMode nextDetection_ = DetectionMode::off;
     glm::dvec3 heldWay_{0.0};
     bool heldFast_ = false, toldFirstUse_ = false;
     bool pointsByKeys_ = false;

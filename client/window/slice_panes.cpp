@@ -220,13 +220,14 @@ void GreyPane::paintRulers(QPainter& painter, const SlicePlacement& placement) {
     constexpr double nearMm = 5.0;
     const glm::dvec3 normal = placement.normal();
     const auto above = [&](glm::dvec3 mm) { return glm::dot(mm - placement.topLeftMm, normal); };
+    RulerTexts rulers(painter, rect());
     for (const reader::PlaceRuler& ruler : reader().shownRulers()) {
         const double from = above(ruler.from.positionMm), to = above(ruler.to.positionMm);
         if (std::min(from, to) > nearMm || std::max(from, to) < -nearMm) continue;
         const bool lies =
             isOn(placement, ruler.from.positionMm) && isOn(placement, ruler.to.positionMm);
-        paintRuler(painter, rect(), positionOf(placement, ruler.from.positionMm),
-                   positionOf(placement, ruler.to.positionMm), !lies, window::textOf(ruler));
+        rulers.paint(positionOf(placement, ruler.from.positionMm),
+                     positionOf(placement, ruler.to.positionMm), !lies, window::textOf(ruler));
     }
     if (const auto& begun = reader().rulers().begun(); begun && isOn(placement, begun->positionMm))
         paintCross(painter, positionOf(placement, begun->positionMm), 3.0, 8.0,

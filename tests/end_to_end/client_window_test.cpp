@@ -1252,6 +1252,16 @@ TEST_F(ClientWindow, HandsOnTheFlattenedWall) {
     ASSERT_TRUE(waitFor([&] { return reader().flat().picked().has_value(); }));
     EXPECT_NEAR(reader().flat().picked()->wall->flat->y, there.y, 1e-9);
     EXPECT_FALSE(reader().flat().wall().measurement());
+    // Each is taken back in its turn: what the click has cleared, and the line before the outline.
+    press(Qt::Key_Z, Qt::ControlModifier);
+    ASSERT_TRUE(reader().flat().wall().measurement());
+    EXPECT_TRUE(reader().flat().wall().measurement()->closed);
+    press(Qt::Key_Z, Qt::ControlModifier);
+    ASSERT_TRUE(reader().flat().wall().measurement());
+    EXPECT_FALSE(reader().flat().wall().measurement()->closed);
+    EXPECT_EQ(reader().flat().wall().measurement()->points.front(), a);
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_FALSE(reader().flat().wall().measurement());
 }
 
 TEST_F(ClientWindow, HandsOnTheOverview) {
@@ -1464,6 +1474,16 @@ TEST_F(ClientWindow, TwoClicksInAnyViewsMeasureBetweenTheirPlaces) {
     const glm::dvec3 ahead = flight().camera().positionMm +
                              tests::fakeRadiusMm * glm::normalize(flight().camera().forward);
     EXPECT_LT(glm::distance(reader().rulers().begun()->positionMm, ahead), 0.2);
+    // It is in sight, where a ray to it meets the wall; the slice's ends, this side of it or
+    // beyond, are not.
+    EXPECT_TRUE(waitFor([&] {
+        return reader().seenEnds().has(flight().camera(), reader().rulers().begun()->positionMm);
+    }));
+    for (const glm::dvec3 end : {a, b})
+        EXPECT_EQ(reader().seenEnds().has(flight().camera(), end),
+                  std::abs(glm::distance(end, flight().camera().positionMm) - tests::fakeRadiusMm) <
+                          2.0 &&
+                      reader::seenAt(flight().camera(), end).has_value());
     click(zoom, zoom.rect().center());
     ASSERT_TRUE(waitFor([&] { return rulers.size() == 2; }));
     const auto place = tests::fakePlace(reader().flat().tour().window().center);
@@ -1474,10 +1494,32 @@ TEST_F(ClientWindow, TwoClicksInAnyViewsMeasureBetweenTheirPlaces) {
     Pane& strip = pane(View::flattened);
     click(strip, {strip.width() / 2, strip.height() / 2});
     ASSERT_TRUE(waitFor([&] { return reader().rulers().begun().has_value(); }));
-    // The tool that is put away gives up what was begun; what is measured can be taken back.
+    // Two clicks on one place measure nothing; to take back gives up what was begun, and so does
+    // Escape before it puts the tool away.
+    click(strip, {strip.width() / 2, strip.height() / 2});
+    ASSERT_TRUE(settle());
+    EXPECT_EQ(rulers.size(), 2u);
+    EXPECT_TRUE(reader().rulers().begun());
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_FALSE(reader().rulers().begun());
+    EXPECT_EQ(rulers.size(), 2u);
+    click(strip, {strip.width() / 2, strip.height() / 2});
+    ASSERT_TRUE(waitFor([&] { return reader().rulers().begun().has_value(); }));
+    press(Qt::Key_Escape);
+    EXPECT_EQ(reading_->tool(), DrawingTool::ruler);
+    EXPECT_FALSE(reader().rulers().begun());
+    // A drag keeps its meaning: it leads along the colon and sets no end.
+    const double arcBefore = flight().arcMm();
+    drag(strip, {{strip.width() / 2, strip.height() / 2},
+                 {strip.width() / 2, strip.height() / 2 + 20},
+                 {strip.width() / 2, strip.height() / 2 + 40}});
+    EXPECT_TRUE(waitFor([&] { return flight().arcMm() != arcBefore; }));
+    EXPECT_FALSE(reader().rulers().begun());
+    press(Qt::Key_Z, Qt::ControlModifier);
+    EXPECT_NEAR(flight().arcMm(), arcBefore, 1e-6);
+    // What is measured can be taken back, when the tool has been put away, too.
     press(Qt::Key_Escape);
     EXPECT_EQ(reading_->tool(), DrawingTool::none);
-    EXPECT_FALSE(reader().rulers().begun());
     press(Qt::Key_Z, Qt::ControlModifier);
     EXPECT_EQ(rulers.size(), 1u);
     press(Qt::Key_Y, Qt::ControlModifier);
@@ -1657,7 +1699,7 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor(waits));
     QPushButton* done = nullptr;
     for (auto* button : window_->findChildren<QPushButton*>())
-        if (button->text() == QStringLiteral("First reading done: show findings")) done = button;
+        if (button->text() == QStringLiteral("First reading done:\nshow findings")) done = button;
     ASSERT_TRUE(done && done->isVisible() && done->isEnabled());
     click(*done, done->rect().center());
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 2; }));
@@ -1738,6 +1780,12 @@ TEST_F(ClientWindow, FindingsAreListedWhereTheModeShowsThemAndGoneToInTheirList)
     ASSERT_TRUE(waitFor([&] { return list.topLevelItemCount() == 0; }));
     EXPECT_TRUE(reader().shownRulers().empty());
     EXPECT_FALSE(reader().findings().current());
+    // What another window of this reader's chooses meanwhile is not this one's next mode.
+    QSettings().setValue("reading/detection", int(DetectionMode::concurrent));
+    emit reading_->caseOpened();
+    EXPECT_EQ(reader().findings().choice().mode, DetectionMode::secondReader);
+    EXPECT_FALSE(reader().findings().choice().shows());
+    EXPECT_TRUE(reader().findings().choose(DetectionMode::off));
     // Nor does any step that is taken back and done again lead to one.
     QUndoStack& steps = reading_->undoStack();
     while (steps.canUndo())

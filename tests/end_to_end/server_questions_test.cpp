@@ -34,7 +34,50 @@ protected:
             ASSERT_TRUE(made.publishVolume("ct", key("its scan"), tube().scan()));
             ASSERT_TRUE(made.publishMesh("surface", key("its mesh"), tube().map().surface));
         }
+        {
+            auto made = store.createCase("rimmed").value();
+            ASSERT_TRUE(made.publishVolume("ct", key("rimmed"), rimmedScan()));
+            ASSERT_TRUE(made.publishCenterline("centerline", key("its path"), tube().centerline()));
+            ASSERT_TRUE(made.publishFlatMap("flatmap", key("its map"), tube().map()));
+        }
         server_ = std::make_unique<ServerProcess>(folder_->path());
+    }
+
+    /// The crest of the fold in the middle of the tube: its radius and its z.
+    static glm::dvec2 crest() {
+        glm::dvec2 least(1e9, 0.0);
+        for (double y = 0.0; y < tube().height(); y += 1e-3) {
+            const glm::dvec3 p = tube().positionMm({0.0, y});
+            if (p.z > 15.0 && p.z < 30.0 && p.x < least.x) least = {p.x, p.z};
+        }
+        return least;
+    }
+    /// The tube's scan, whose tissue reaches up to a millimetre before that crest, as the mucosa's
+    /// picture reaches before the mesh; at angles from 1.5 to 2.5 it does not, but a ball stands in
+    /// the lumen.
+    static Volume<std::int16_t> rimmedScan() {
+        Volume<std::int16_t> scan = tube().scan();
+        const Grid grid = scan.grid();
+        const auto voxels = scan.writable();
+        const glm::dvec2 fold = crest();
+        const glm::dvec3 ball = rayPast(2.0) + 3.0 * along(2.0);
+        for (std::size_t n = 0; n < voxels.size(); ++n) {
+            const glm::dvec3 p = grid.patientFromVoxelPoint(glm::dvec3(grid.voxelAt(n)));
+            const double angle = std::atan2(p.y, p.x);
+            const bool isRim = std::hypot(p.x, p.y) > fold.x - 1.0 &&
+                               std::abs(p.z - fold.y) < 1.0 && (angle < 1.5 || angle > 2.5);
+            if (isRim || glm::distance(p, ball) < 1.5) voxels[n] = 40;
+        }
+        return scan;
+    }
+    /// Of a ray that passes half a millimetre before the crest, outwards: where it begins, 6 mm
+    /// before, and its direction.
+    static glm::dvec3 along(double angle) {
+        return glm::normalize(glm::dvec3(0.2 * std::cos(angle), 0.2 * std::sin(angle), 1.0));
+    }
+    static glm::dvec3 rayPast(double angle) {
+        const double r = crest().x - 0.5;
+        return glm::dvec3(r * std::cos(angle), r * std::sin(angle), crest().y) - 6.0 * along(angle);
     }
     static std::unique_ptr<TestClient> reader(const std::string& name) {
         auto client = std::make_unique<TestClient>(server_->port());
@@ -178,6 +221,24 @@ TEST_F(ServerQuestions, ARayMeetsTheWallOfFlattenedMeshedAndBareCases) {
     EXPECT_FALSE(inScan.wall_place().has_flat());
     EXPECT_GT(inScan.wall_place().position_mm().x(), -1.2);
     EXPECT_NEAR(inScan.wall_place().position_mm().z(), 112.0, 1e-9);
+}
+
+TEST_F(ServerQuestions, ARayMeetsARimThatThePictureHasBeforeTheMesh) {
+    const auto plain = reader(smallCaseName), rimmed = reader("rimmed");
+    const auto metBy = [&](TestClient& client, double angle) {
+        const auto answer = ask(client, pick(7, rayPast(angle), along(angle)));
+        EXPECT_TRUE(answer.has_wall_place()) << answer.ShortDebugString();
+        const auto& p = answer.wall_place().position_mm();
+        return glm::dvec3(p.x(), p.y(), p.z());
+    };
+    for (const double angle : {0.4, 2.0}) {
+        const glm::dvec3 behind = metBy(*plain, angle), met = metBy(*rimmed, angle);
+        EXPECT_GT(behind.z, crest().y + 3.0) << "the wall behind the fold";
+        if (angle < 1.5)
+            EXPECT_LT(std::abs(met.z - crest().y), 2.0) << "the crest";
+        else
+            EXPECT_LT(glm::distance(met, behind), 1e-6) << "what stands free is no wall";
+    }
 }
 
 TEST_F(ServerQuestions, RaysThatMeetNothingAreRefused) {

@@ -503,6 +503,10 @@
         <source>Save a report of what has been seen…</source>
         <translation>Bericht über das Gesehene speichern …</translation>
     </message>
+    <message>
+        <source>first end of a ruler</source>
+        <translation>erstes Ende eines Maßes</translation>
+    </message>
 </context>
 <context>
     <name>Help</name>
@@ -1470,10 +1474,6 @@
         <translation>Zuerst zu einem Befund gehen.</translation>
     </message>
     <message>
-        <source>First reading done: show findings</source>
-        <translation>Eigene Befundung beendet: Befunde zeigen</translation>
-    </message>
-    <message>
         <source>also those from</source>
         <translation>auch solche ab</translation>
     </message>
@@ -1620,6 +1620,12 @@
         <source>A rule tells it: no probability</source>
         <translation>Eine Regel nennt ihn: keine Wahrscheinlichkeit</translation>
     </message>
+    <message>
+        <source>First reading done:
+show findings</source>
+        <translation>Eigene Befundung beendet:
+Befunde zeigen</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::FlatZoomPane</name>
@@ -1674,6 +1680,10 @@
     <message>
         <source>click two places to measure between them   Esc ends</source>
         <translation>zwei Orte anklicken, um dazwischen zu messen   Esc beendet</translation>
+    </message>
+    <message>
+        <source>clear the measurement</source>
+        <translation>Messung löschen</translation>
     </message>
 </context>
 <context>

@@ -150,15 +150,18 @@ std::vector<FindingPixel> findingPixels(const StripPainter& painter, const Findi
                                        glm::dvec3(facets[std::size_t(place->triangle)].inward));
         }
     });
-    // A conformal map shrinks a head on a long stalk to less than a pixel: then the pixels beside
-    // its triangles, which a smooth paint's colour is made of, are its.
-    std::vector<bool> painted(ranked.count(), false);
+    // A conformal map shrinks a head on a long stalk to a pixel or less: of what has fewer pixels
+    // than triangles all pixels beside these, which a smooth paint's colour is made of, are its.
+    std::vector<std::size_t> pixelsOf(ranked.count(), 0), trianglesOf(ranked.count(), 0);
     for (const std::int32_t finding : ofPixel)
-        if (finding >= 0) painted[std::size_t(finding)] = true;
+        if (finding >= 0) ++pixelsOf[std::size_t(finding)];
     const std::vector<std::int32_t> ofTriangle = ranked.ofTriangles(painter.sight());
+    for (const std::int32_t finding : ofTriangle)
+        if (finding >= 0) ++trianglesOf[std::size_t(finding)];
     for (std::size_t t = 0; t < facets.size(); ++t) {
         const std::int32_t finding = ofTriangle[t];
-        if (finding < 0 || painted[std::size_t(finding)]) continue;
+        if (finding < 0 || pixelsOf[std::size_t(finding)] >= trianglesOf[std::size_t(finding)])
+            continue;
         const glm::dvec2 at = glm::dvec2(size) - glm::dvec2(facets[t].flat) * double(size.x) - 0.5;
         for (const glm::ivec2 step : {glm::ivec2(0, 0), {1, 0}, {0, 1}, {1, 1}}) {
             const glm::ivec2 pixel = glm::ivec2(glm::floor(at)) + step;
