@@ -31,6 +31,10 @@ constexpr const char* sentences[] = {
                       "that is inflamed or contracted, or a long tumour"),
     QT_TRANSLATE_NOOP(
         "ToldSentences",
+        "the wall is %1 mm thick all around from %2 to %3 mm, but the lumen is %4 mm wide: other "
+        "bowel may lie around it, or it is inflamed"),
+    QT_TRANSLATE_NOOP(
+        "ToldSentences",
         "on %1 mm of the colon, from %2 mm on, nothing is told of how thick the wall is: %3 HU at "
         "most behind it are fluid's, around the colon or in a wall that is swollen"),
     QT_TRANSLATE_NOOP("ToldSentences", "polyps may be missed: %1"),

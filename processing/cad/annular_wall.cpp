@@ -175,7 +175,7 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
         const double fromMm = double(n) * sectionMm;
         // One section between may be spoilt by a pool or a leak.
         if (walls.empty() || fromMm > walls.back().toMm + sectionMm) {
-            walls.push_back({fromMm, fromMm, 0.0, {}});
+            walls.push_back({.fromMm = fromMm, .toMm = fromMm});
             thicknesses.emplace_back();
         }
         walls.back().toMm = fromMm + sectionMm;
@@ -203,6 +203,10 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
                 !evidence.unseen[sample] && !evidence.untagged[sample])
                 hus.push_back(huBehind(evidence, sample, 0.5 * mm));
         wall.middleHu = hus.empty() ? evidence.statistics.wallHu : medianOf(hus);
+        wall.channelMm = unbounded;
+        for (double arcMm = wall.fromMm; arcMm <= wall.toMm; arcMm += 1.0)
+            wall.channelMm =
+                std::min(wall.channelMm, 2.0 * poseAtArc(colon.centerline, arcMm).point.radiusMm);
     }
     return walls;
 }

@@ -21,6 +21,7 @@ struct AnnularWall {
     double fromMm = 0.0, toMm = 0.0;     ///< arcs along the centerline
     double thicknessMm = 0.0;            ///< of its wall, median
     double middleHu = 0.0;               ///< median of the smoothed scan half-way through it
+    double channelMm = 0.0;              ///< twice the path's least distance from it
     std::vector<std::uint32_t> samples;  ///< its wall, ascending
     double lengthMm() const { return toMm - fromMm; }
 };
@@ -48,6 +49,11 @@ bool isFluid(const AnnularWall& wall, const WallStatistics& statistics);
 /// Longer ones are segments that are inflamed or contracted rather than a tumour: of cancers that
 /// thicken the wall 87 % are shorter than 50 mm (Lee et al., Korean J Gastroenterol 2012; 60: 300).
 inline constexpr double longestTumourMm = 100.0;
+
+/// A wider lumen than this is not narrowed: a distended colon's is 26 to 46 mm wide in the mean, by
+/// part (chain_graph's calibres), and cancers all around leave less. There, what lies against the
+/// colon on all sides is other bowel, or the wall is inflamed.
+inline constexpr double widestChannelMm = 25.0;
 
 /// As a finding of annularKind, without features. Its voxels are its tissue, of which the outermost
 /// is left out where it has more runs than a list of findings has room for, and all where even the

@@ -262,6 +262,13 @@ void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, 
             fluidMm += wall.lengthMm(), fluidHu = std::max(fluidHu, wall.middleHu);
             continue;
         }
+        if (wall.channelMm > widestChannelMm) {
+            findings.warnings.push_back(printed(
+                "the wall is %.0f mm thick all around from %.0f to %.0f mm, but the lumen is %.0f "
+                "mm wide: other bowel may lie around it, or it is inflamed",
+                wall.thicknessMm, wall.fromMm, wall.toMm, wall.channelMm));
+            continue;
+        }
         const bool tumour = wall.lengthMm() <= longestTumourMm;
         findings.warnings.push_back(printed(
             "the wall is %.0f mm thick all around from %.0f to %.0f mm: %s", wall.thicknessMm,

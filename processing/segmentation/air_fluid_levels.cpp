@@ -118,13 +118,13 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
     std::vector<double> heights, steps;
     for (const LevelColumn& c : level.columns) {
         const double middle = crossing(hu, c, down, 0.5 * (gas + level.fluidHu));
-        heights.push_back(voxelMm * (c.above[down.axis] + down.sign * middle));
+        heights.push_back(voxelMm * (down.heightOf(c.above) + down.sign * middle));
         // From above the gas' own edge: the column's gas ends at that very HU.
         LevelColumn from = c;
         from.above[down.axis] -= down.sign;
         if (!hu.grid().contains(from.above)) continue;
         steps.push_back(voxelMm * (crossing(hu, from, down, 0.5 * (soft + level.fluidHu)) -
-                                   crossing(hu, from, down, 0.5 * (gas + soft))));
+                                   crossing(hu, from, down, soft - 0.25 * (soft - gas))));
     }
     std::vector<double> sorted = heights;
     level.heightMm = medianOrZero(sorted);
@@ -150,8 +150,11 @@ void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t
                 const TissueModel& tissue, GravityAxis down, double columnMm2,
                 std::vector<Level>& levels) {
     std::unordered_map<int, int> heights;
+    const auto heightOf = [&](const LevelColumn& c) {
+        return int(std::lround(down.heightOf(c.below)));
+    };
     for (const LevelColumn& c : patch)
-        ++heights[c.below[down.axis]];
+        ++heights[heightOf(c)];
     int mode = 0, most = 0;
     for (const auto& [height, count] : heights) {
         const int around = count + (heights.count(height - 1) ? heights.at(height - 1) : 0) +
@@ -163,7 +166,7 @@ void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t
     level.height = mode;
     std::vector<int> samples;
     for (const LevelColumn& c : patch) {
-        if (std::abs(c.below[down.axis] - mode) > 1) continue;
+        if (std::abs(heightOf(c) - mode) > 1) continue;
         level.columns.push_back(c);
         glm::ivec3 v = c.below;
         for (int depth = 0; depth < deepestSample; ++depth, v[down.axis] += down.sign) {
@@ -235,9 +238,58 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
     return levels;
 }
 
-double totalAreaMm2(const std::vector<Level>& levels) {
-    return std::accumulate(levels.begin(), levels.end(), 0.0,
-                           [](double sum, const Level& level) { return sum + level.areaMm2; });
+std::optional<double> edgeWidthMm(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                  const Volume<std::uint8_t>& content, int axis) {
+    constexpr std::size_t leastEdges = 100;
+    constexpr int flat = 3, widest = 6;  // voxels of gas, and of what lies between it and tissue
+    constexpr double nearHu = 80.0;      // of soft tissue
+    const Grid& grid = hu.grid();
+    const double gas = tissue.meanHu[int(Tissue::air)], soft = tissue.meanHu[int(Tissue::soft)];
+    const double quarter = gas + 0.25 * (soft - gas), most = gas + 0.75 * (soft - gas);
+    // Some lines are enough.
+    const int slices = std::max(1, grid.size.z / 64),
+              lines = std::max(1, grid.size[1 - axis] / 128);
+    std::vector<double> widths;
+    for (int k = 0; k < grid.size.z; k += slices) {
+        for (int n = 0; n < grid.size[1 - axis]; n += lines) {
+            glm::ivec3 v(0, 0, k);
+            v[1 - axis] = n;
+            const auto at = [&](int step) {
+                v[axis] = step;
+                return grid.index(v);
+            };
+            for (const int sign : {-1, 1}) {
+                const auto voxel = [&](int step) {
+                    return at(sign > 0 ? step : grid.size[axis] - 1 - step);
+                };
+                int run = 0;
+                for (int step = 0; step + widest + flat < grid.size[axis]; ++step) {
+                    if (Content(content[voxel(step)]) == Content::gas &&
+                        hu[voxel(step)] < quarter) {
+                        ++run;
+                        continue;
+                    }
+                    if (std::exchange(run, 0) < flat) continue;
+                    double from = -1.0, to = -1.0;
+                    for (int beyond = 0; beyond < widest && to < 0.0; ++beyond) {
+                        const double last = hu[voxel(step + beyond - 1)],
+                                     here = hu[voxel(step + beyond)];
+                        if (here <= last) break;
+                        if (from < 0.0 && here > quarter)
+                            from = beyond + (quarter - last) / (here - last);
+                        if (here > most) to = beyond + (most - last) / (here - last);
+                        if (to >= 0.0)
+                            for (int more = 1; more <= flat; ++more)
+                                if (std::abs(hu[voxel(step + beyond + more)] - soft) > nearHu)
+                                    to = -1.0, beyond = widest;
+                    }
+                    if (to >= 0.0) widths.push_back((to - from) * grid.spacingMm()[axis]);
+                }
+            }
+        }
+    }
+    if (widths.size() < leastEdges) return std::nullopt;
+    return medianOf(widths);
 }
 
 }  // namespace haustra::segmentation

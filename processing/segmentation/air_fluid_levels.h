@@ -5,6 +5,7 @@
 #include "core/volume.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace haustra::segmentation {
@@ -13,6 +14,14 @@ namespace haustra::segmentation {
 struct GravityAxis {
     int axis = 1;
     int sign = 1;
+    /// Of an oblique grid, or one of a tilted gantry: by how many voxels along the axis a level
+    /// plane falls from one voxel to the next along the other of the axes 0 and 1, and along 2.
+    glm::dvec2 slope{0.0};
+
+    /// Of a voxel along the axis, without what its place in a level plane makes of it.
+    double heightOf(glm::ivec3 voxel) const {
+        return voxel[axis] + slope.x * voxel[1 - axis] + slope.y * voxel.z;
+    }
 };
 
 /// One column of a level: gas ends at `above`, fluid begins at `below`, with up to a few voxels of
@@ -30,7 +39,8 @@ struct Level {
     double heightMm =
         0.0;  ///< median of the columns' mid-height crossings along the axis, from voxel 0
     double roughnessMm = 0.0;  ///< median distance of those from heightMm
-    double stepMm = 0.0;       ///< median way from the wall's HU over gas to that under fluid
+    /// Median way past soft tissue's HU: from a quarter of the way to gas to half of that to fluid.
+    double stepMm = 0.0;
 };
 
 /// Flat levels for one direction of gravity (dissertation §3.2: below their air and above their
@@ -38,7 +48,10 @@ struct Level {
 std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                               const Volume<std::uint8_t>& content, GravityAxis down, int threads);
 
-/// Total area of levels, mm²: how a direction of gravity shows in the data.
-double totalAreaMm2(const std::vector<Level>& levels);
+/// How far the scan's blur spreads the edge between gas and soft tissue: the way, mm, over the
+/// middle half of its height (1.35 σ), across gas' floors and ceilings along the axis; the median.
+/// Empty where fewer than a hundred are seen.
+std::optional<double> edgeWidthMm(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                  const Volume<std::uint8_t>& content, int axis);
 
 }  // namespace haustra::segmentation

@@ -310,6 +310,10 @@ GravityAxis axisOf(const Grid& grid, glm::dvec3 gravity) {
             glm::dot(glm::normalize(glm::dvec3(grid.patientFromVoxel[axis])), gravity);
         if (std::abs(along) > best) best = std::abs(along), down = {axis, along < 0.0 ? -1 : 1};
     }
+    const auto perVoxel = [&](int axis) {
+        return glm::dot(glm::dvec3(grid.patientFromVoxel[axis]), gravity);
+    };
+    down.slope = glm::dvec2(perVoxel(1 - down.axis), perVoxel(2)) / perVoxel(down.axis);
     return down;
 }
 
@@ -317,6 +321,22 @@ const char* lyingName(glm::dvec3 gravity) {
     if (gravity.y > 0.0) return "supine";
     if (gravity.y < 0.0) return "prone";
     return gravity.x > 0.0 ? "on the left side" : "on the right side";
+}
+
+// Gas over fluid has but their blur between, so that soft tissue's HU are passed within 0.95 σ to
+// 1.3 σ, or foam besides. Where two walls lie between, as of fluid in a loop beneath another's
+// floor, or lung beside bone, there is tissue of these HU.
+void dropThoseBehindWalls(std::vector<Level>& levels, double edgeWidthMm) {
+    constexpr double mostOfWidth = 1.25;  // which is 1.35 σ; foam makes it up to this
+    std::erase_if(levels,
+                  [&](const Level& level) { return level.stepMm > mostOfWidth * edgeWidthMm; });
+}
+// The area of those that have no more than blur between.
+double sureAreaMm2(const std::vector<Level>& levels, double edgeWidthMm) {
+    double sum = 0.0;
+    for (const Level& level : levels)
+        sum += level.stepMm <= edgeWidthMm ? level.areaMm2 : 0.0;
+    return sum;
 }
 
 // The patient position says which way is down; the levels must agree, and overrule it where they
@@ -330,10 +350,15 @@ void findGravity(const Volume<std::int16_t>& hu, PatientPosition position,
     std::array<std::vector<Level>, 4> levels;
     std::array<double, 4> areaMm2{};
     std::size_t best = 0, toldIndex = 0;
+    std::array<double, 2> edgeMm{};
+    for (const int axis : {0, 1})
+        edgeMm[std::size_t(axis)] =
+            edgeWidthMm(hu, tissue, contents.content, axis).value_or(INFINITY);
     for (std::size_t n = 0; n < directions.size(); ++n) {
-        levels[n] =
-            findLevels(hu, tissue, contents.content, axisOf(hu.grid(), directions[n]), threads);
-        areaMm2[n] = totalAreaMm2(levels[n]);
+        const GravityAxis down = axisOf(hu.grid(), directions[n]);
+        levels[n] = findLevels(hu, tissue, contents.content, down, threads);
+        dropThoseBehindWalls(levels[n], edgeMm[std::size_t(down.axis)]);
+        areaMm2[n] = sureAreaMm2(levels[n], edgeMm[std::size_t(down.axis)]);
         if (areaMm2[n] > areaMm2[best]) best = n;
         if (known && glm::dot(directions[n], told) > 0.5) toldIndex = n;
     }

@@ -157,6 +157,22 @@ BrightestFluid brightestFluid(const std::vector<Level>& levels, double softHu) {
     return {};
 }
 
+/// The area of the levels that stand on each piece, mm².
+std::vector<double> levelsOn(const TubePieces& cut, const BowelContents& contents) {
+    std::vector<double> mm2(cut.pieces.size(), 0.0);
+    const Grid& grid = cut.pieceAt.grid();
+    const double columnMm2 = grid.voxelVolumeMm3() / grid.spacingMm()[contents.down.axis];
+    for (const Level& level : contents.levels) {
+        for (const LevelColumn& column : level.columns) {
+            glm::ivec3 v = column.below;
+            v[contents.down.axis] += contents.down.sign;  // beneath what is blurred
+            const std::int32_t p = grid.contains(v) ? cut.pieceAt.at(v) : -1;
+            if (p >= 0) mm2[std::size_t(p)] += columnMm2;
+        }
+    }
+    return mm2;
+}
+
 /// What was said of each piece.
 enum class Said : char { nothing, bowel, notColon };
 
@@ -335,6 +351,8 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     const BrightestFluid brightest = brightestFluid(contents.levels, softHu);
     const std::vector<Said> said = saidOf(given, cut.pieces.size());
+    constexpr double leastLevelMm2 = 20.0;
+    const std::vector<double> levelMm2 = levelsOn(cut, contents);
     PieceGraph made;
     made.nodeOf.assign(cut.pieces.size(), -1);
     for (std::size_t p = 0; p < cut.pieces.size() && made.pieceOf.size() < mostNodes; ++p) {
@@ -343,8 +361,9 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
                            isUntaggedBowel(piece) ||
                            isTaggedBowel(piece, softHu, brightest, contents.gasSdHu);
         if (!bowel) {
-            if (isTooBright(piece, softHu, brightest, contents.gasSdHu))
-                made.tooBright.push_back(std::int32_t(p));
+            if (isTooBright(piece, softHu, brightest, contents.gasSdHu) ||
+                (isDense(piece, softHu) && levelMm2[p] >= leastLevelMm2))
+                made.doubtful.push_back(std::int32_t(p));
             continue;
         }
         made.nodeOf[p] = std::int32_t(made.pieceOf.size());

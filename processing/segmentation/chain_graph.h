@@ -13,9 +13,10 @@ struct PieceGraph {
     ChainGraph graph;
     std::vector<std::int32_t> pieceOf;  ///< of each node
     std::vector<std::int32_t> nodeOf;   ///< of each piece, or −1
-    /// Pieces that are as wide and even as fluid, and no nodes for being brighter than that under
-    /// the levels: a bladder full of contrast medium, or a part of the colon that is tagged more.
-    std::vector<std::int32_t> tooBright;
+    /// Pieces that may be fluid, and are no nodes. They are as wide and even as fluid, but brighter
+    /// than that under the levels: a bladder full of contrast medium, or a part of the colon that
+    /// is tagged more. Or they are too uneven, but a level stands on them.
+    std::vector<std::int32_t> doubtful;
     std::vector<glm::dvec3> lowestMm;  ///< place of each node
     BodyFrame frame;
     std::vector<CollapsePath>

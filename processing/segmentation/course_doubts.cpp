@@ -112,7 +112,8 @@ std::vector<Doubt> doubtsOf(const ColonRecord& record) {
                   printed("a wall of %.0f mm2 that was set up is wider than bowel that touches",
                           wall.areaMm2));
         if (wall.betweenLoops && wall.areaMm2 > tellMm2)
-            doubt(0.02, printed("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
+            doubt(wall.areaMm2 > flatLoopMm2 ? 0.4 : 0.02,
+                  printed("a rebuilt wall of %.0f mm2 may be none", wall.areaMm2));
     }
     double untaggedMl = 0.0;
     for (const ColonPiece& piece : record.pieces)

@@ -325,8 +325,9 @@ Result<Course> findCourse(const Surroundings& among, const Volume<std::uint8_t>&
                           const TissueModel& tissue, const ColonOptions& options) {
     const double softHu = tissue.meanHu[int(Tissue::soft)];
     Course course;
-    course.cut = cutIntoPieces(among.hu, among.contents.content, thinWalls,
-                               {.softHu = softHu, .threads = options.threads});
+    course.cut =
+        cutIntoPieces(among.hu, among.contents.content, thinWalls,
+                      {.softHu = softHu, .down = among.contents.down, .threads = options.threads});
     const GivenPieces given = givenPieces(course.cut, options.edits, course.missing);
     course.graph = makePieceGraph(among.hu, among.contents, tissue, course.cut,
                                   foldDensityMm(course.cut, thinWalls, options.threads),

@@ -254,7 +254,7 @@ private:
             if (body.isNear() || isMuchGas(body, node)) made_.leftOut.push_back(body);
         }
         // Whatever it is, it may be the way on.
-        for (const std::int32_t p : graph_.tooBright) {
+        for (const std::int32_t p : graph_.doubtful) {
             const TubePiece& piece = cut_.pieces[std::size_t(p)];
             if (piece.volumeMl >= leastMl && !isTakenIn(piece))
                 made_.leftOut.push_back(leftOut(piece, false));

@@ -318,13 +318,16 @@ void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu
     labelBodiesOf(search.besideAir(), [&](const auto& body) {
         return search.isWellTagged(body) && search.liesInLumen(body, smallestContactShare);
     });
+    const auto isBall = [&](const auto& body) {
+        return search.isWellTagged(body) && search.liesInLumen(body, smallestBallContactShare);
+    };
     search.bar(other.bowel, false);
-    if (!other.bowel.empty())
-        labelBodiesOf(search.besideAir(other.bowel), [&](const auto& body) {
-            return search.isWellTagged(body) && search.liesInLumen(body, smallestBallContactShare);
-        });
-    search.bar(other.bowel, true);
+    if (!other.bowel.empty()) labelBodiesOf(search.besideAir(other.bowel), isBall);
+    // Of a lump of lobes each touches the others: with what is as wide as bowel they are one.
     search.bar(other.aside, false);
+    if (!other.bowel.empty() && !other.aside.empty())
+        labelBodiesOf(search.besideAir(other.bowel), isBall);
+    search.bar(other.bowel, true);
     labelBodiesOf(search.besideAir(), [&](const auto& body) {
         return (search.standsInGas(body) || search.isFilm(body)) &&
                (search.isWellTagged(body) ||

@@ -22,7 +22,7 @@ struct OtherMaterial {
 /// - are well brighter than tagging begins, have an inside, and face labelled lumen by a quarter of
 ///   their surface: a lump of stool. Bone or opacified bowel behind the wall shows the lumen less,
 ///   through the wall. Those with voxels of `bowel` face it by half: a loop that is pressed flat
-///   against the colon shows a quarter or more;
+///   against the colon shows a quarter or more. So do lumps of lobes, of which one is of `bowel`;
 /// - or face air by three fifths of their surface and are 10 mm wide at most: a crumb, or a film
 ///   around a head. A coated fold is wider;
 /// - or face air by three tenths of it with nothing but blur between and are 4 mm thick at most,
@@ -30,11 +30,11 @@ struct OtherMaterial {
 ///   which tell blur from a wall. What coats a fold has gas within 6 mm beneath three tenths of it
 ///   and stays, as it would take the fold along.
 ///
-/// The first holds nothing of `aside`, the latter two nothing of `bowel`. Of these, what is not
-/// well tagged as the first is left alone where it may be soft tissue's noise (as measured in gas),
-/// and where `contents` have it for tissue: a sharp kernel's overshoot. `labels` must own its
-/// memory. O(voxels); takes two bits a voxel, and 4 bytes for each voxel of the largest tagged body
-/// that touches the lumen.
+/// The first holds nothing of `aside` but for such lobes, the latter two nothing of `bowel`. Of
+/// these, what is not well tagged as the first is left alone where it may be soft tissue's noise
+/// (as measured in gas), and where `contents` have it for tissue: a sharp kernel's overshoot.
+/// `labels` must own its memory. O(voxels); takes two bits a voxel, and 4 bytes for each voxel of
+/// the largest tagged body that touches the lumen.
 void addTaggedStool(Volume<std::uint8_t>& labels, const Volume<std::int16_t>& hu,
                     const BowelContents& contents, const TissueModel& tissue,
                     const OtherMaterial& other);

@@ -435,10 +435,25 @@ std::size_t numberByVolume(std::span<std::int32_t> label, const std::vector<std:
 /// Tagged voxels more than 2.5 mm deep in a piece.
 struct Core {
     std::int64_t voxels = 0, sumHu = 0, sumHu2 = 0;
+    std::int64_t sumDepth = 0, sumDepth2 = 0, sumHuDepth = 0;  ///< depth: downwards, in voxels
     void add(const Core& other) {
         voxels += other.voxels, sumHu += other.sumHu, sumHu2 += other.sumHu2;
+        sumDepth += other.sumDepth, sumDepth2 += other.sumDepth2, sumHuDepth += other.sumHuDepth;
     }
-    void add(std::int64_t hu) { add({1, hu, hu * hu}); }
+    void add(std::int64_t hu, std::int64_t depth = 0) {
+        add({1, hu, hu * hu, depth, depth * depth, hu * depth});
+    }
+    double meanHu() const { return double(sumHu) / double(voxels); }
+    /// About the line that best tells HU from the depth, where it rises downwards: tagging that has
+    /// settled lies in layers, and bone does not.
+    double sdHu() const {
+        const double count = double(voxels), depth = double(sumDepth) / count;
+        const double ofHu = double(sumHu2) / count - meanHu() * meanHu(),
+                     ofDepth = double(sumDepth2) / count - depth * depth,
+                     ofBoth = double(sumHuDepth) / count - meanHu() * depth;
+        const double layered = ofDepth > 0.0 && ofBoth > 0.0 ? ofBoth * ofBoth / ofDepth : 0.0;
+        return std::sqrt(std::max(0.0, ofHu - layered));
+    }
 };
 bool isCore(std::uint8_t content, float distanceMm) {
     return Content(content) == Content::tagged && distanceMm > 2.5f;
@@ -454,8 +469,7 @@ std::vector<double> coreHuOf(std::span<const std::int32_t> label, std::size_t pi
                                                   if (isCore(content[n], distanceMm[n]))
                                                       tally.add(hu[n]);
                                               }))
-        mean.push_back(core.voxels > 0 ? double(core.sumHu) / double(core.voxels)
-                                       : -std::numeric_limits<double>::infinity());
+        mean.push_back(core.voxels > 0 ? core.meanHu() : -std::numeric_limits<double>::infinity());
     return mean;
 }
 
@@ -656,7 +670,7 @@ struct PieceTally {
 /// Pieces and orifices of cut.pieceAt, whose numbers are below `count`.
 void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
              const Volume<std::uint8_t>& content, const Volume<std::uint8_t>& thinWalls,
-             int threads) {
+             GravityAxis down, int threads) {
     const Grid& grid = hu.grid();
     const std::int32_t* const label = cut.pieceAt.voxels().data();
     const double voxelMm3 = grid.voxelVolumeMm3();
@@ -672,7 +686,7 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
             if (own == Content::tagged) ++tally.taggedVoxels, tally.taggedHu += hu[n];
             tally.untaggedVoxels += own == Content::untagged;
             const float mm = cut.distanceMm[n];
-            if (isCore(content[n], mm)) tally.core.add(hu[n]);
+            if (isCore(content[n], mm)) tally.core.add(hu[n], down.sign * v[down.axis]);
             if (mm > tally.radiusMm) tally.radiusMm = mm, tally.center = v;
             visitFaces(grid, n, v, [&](std::size_t m, int axis) {
                 if (label[m] == l) return;
@@ -698,12 +712,8 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
         piece.radiusMm = tally.radiusMm, piece.center = tally.center;
         piece.surfaceMm2 = areaMm2(tally.faces);
         piece.excludedAirMm2 = areaMm2(tally.excludedAirFaces);
-        if (tally.core.voxels > 0) {
-            const double voxels = double(tally.core.voxels);
-            piece.coreHu = double(tally.core.sumHu) / voxels;
-            piece.coreSdHu = std::sqrt(
-                std::max(0.0, double(tally.core.sumHu2) / voxels - piece.coreHu * piece.coreHu));
-        }
+        if (tally.core.voxels > 0)
+            piece.coreHu = tally.core.meanHu(), piece.coreSdHu = tally.core.sdHu();
         piece.volumeMl = double(piece.voxels) * voxelMm3 / 1000.0;
         piece.centerMm = grid.patientFromVoxelPoint(piece.center);
         piece.meanHu =
@@ -801,10 +811,10 @@ TubePieces cutIntoPieces(const Volume<std::int16_t>& hu, const Volume<std::uint8
                [](std::size_t, std::int32_t) { return true; });
     }
 
-    measure(cut, pieces, hu, content, thinWalls, threads);
+    measure(cut, pieces, hu, content, thinWalls, options.down, threads);
     if (const std::vector<std::int32_t> sides = sideBySide(cut); !sides.empty()) {
         pieces = numberByVolume(label, sides, grid, threads);
-        measure(cut, pieces, hu, content, thinWalls, threads);
+        measure(cut, pieces, hu, content, thinWalls, options.down, threads);
     }
     return cut;
 }

@@ -3,6 +3,7 @@
 
 #include "core/colon_record.h"
 #include "core/ct_scan.h"
+#include "segmentation/air_fluid_levels.h"
 
 #include <cstdint>
 #include <vector>
@@ -16,10 +17,11 @@ struct TubePiece {
     double radiusMm = 0.0;  ///< of the largest ball inside
     glm::ivec3 center{0};   ///< that ball's voxel
     glm::dvec3 centerMm{0.0};
-    double meanHu = 0.0;  ///< of gas where it is mostly gas, of tagged material elsewhere
-    double coreHu = 0.0, coreSdHu = 0.0;  ///< of its tagged voxels more than 2.5 mm deep
-    double surfaceMm2 = 0.0;              ///< faces towards anything else than the piece
-    double excludedAirMm2 = 0.0;          ///< … towards the room's air and lung
+    double meanHu = 0.0;      ///< of gas where it is mostly gas, of tagged material elsewhere
+    double coreHu = 0.0;      ///< of its tagged voxels more than 2.5 mm deep
+    double coreSdHu = 0.0;    ///< … about a line that rises downwards, as settled tagging does
+    double surfaceMm2 = 0.0;  ///< faces towards anything else than the piece
+    double excludedAirMm2 = 0.0;  ///< … towards the room's air and lung
     bool mostlyGas() const { return gasVoxels >= taggedVoxels + untaggedVoxels; }
     BodyContent content() const {
         if (mostlyGas()) return BodyContent::gas;
@@ -52,6 +54,7 @@ struct TubePieceOptions {
     double neck = 0.75;  ///< a ball that passes is smaller than this part of the lesser piece's
     double lengthMm = 110.0;  ///< a piece half as long again is cut, by the way from face to face
     double softHu = 40.0;     ///< what walls are made of
+    GravityAxis down;
     int threads = 0;
 };
 

@@ -103,7 +103,8 @@ VoxelBox bowelBox(const Volume<std::uint8_t>& content, std::span<const glm::dvec
 
 BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int threads) {
     BowelContents part;
-    part.content = cropped(contents.content, box, threads);
+    // Pools and cuts are marked in it: a copy, also where the box is all of it.
+    part.content = croppedCopy(contents.content, box, threads);
     part.levels = contents.levels;
     for (Level& level : part.levels) {
         for (LevelColumn& column : level.columns)
@@ -112,8 +113,8 @@ BowelContents cropped(const BowelContents& contents, const VoxelBox& box, int th
             return !part.content.grid().contains(column.above) ||
                    !part.content.grid().contains(column.below);
         });
-        const int before = box.lo[contents.down.axis];
-        level.height -= before;
+        const double before = contents.down.heightOf(box.lo);
+        level.height -= int(std::lround(before));
         level.heightMm -= before * contents.content.grid().spacingMm()[contents.down.axis];
     }
     part.down = contents.down, part.gravity = contents.gravity;

@@ -73,7 +73,7 @@ struct RingTube {
         for (int j = 0; j <= along; ++j) {
             const double z = 1.0 + (lengthMm - 2.0) * j / along;
             flat.cameras.push_back({{0.0, 0.0, z}, z});
-            centerline.points.push_back({{0.0, 0.0, z}, z, openMm, false});
+            centerline.points.push_back({{0.0, 0.0, z}, z, lumenMm(z, 0.0), false});
             for (int i = 0; i <= around; ++i) {
                 const double angle = twoPi * (i % around) / around, r = lumenMm(z, angle);
                 flat.surface.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
@@ -112,6 +112,7 @@ TEST(AnnularWall, IsToldWithItsStretchAndItsThickness) {
     EXPECT_NEAR(walls[0].toMm, 130.0, 4.0);
     EXPECT_NEAR(walls[0].thicknessMm, 17.5 - 7.0, 1.0);
     EXPECT_NEAR(walls[0].middleHu, 40.0, 2.0);
+    EXPECT_NEAR(walls[0].channelMm, 14.0, 0.5);
 }
 
 TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
@@ -223,6 +224,12 @@ TEST(AnnularWall, AShortOneIsAFindingAndALongOneAWarning) {
         return warning.find("8 HU at most behind it are fluid's") != std::string::npos;
     }));
     EXPECT_EQ(findingsOf({.thickHu = 28.0}).findings.size(), 1u) << "a tumour that is dark";
+
+    const Findings open = findingsOf({.channelMm = 14.0, .outerMm = 22.5});
+    EXPECT_TRUE(open.findings.empty()) << "what lies around a lumen that is not narrowed";
+    EXPECT_TRUE(std::ranges::any_of(open.warnings, [](const std::string& warning) {
+        return warning.find("but the lumen is 28 mm wide") != std::string::npos;
+    }));
 
     const Findings segment = findingsOf({.fromMm = 80.0, .toMm = 220.0});
     EXPECT_TRUE(segment.findings.empty());

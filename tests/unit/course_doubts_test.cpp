@@ -160,4 +160,15 @@ TEST(CourseDoubts, AreInTheQuality) {
     EXPECT_NEAR(trust->confidence, record.confidence, 0.01);
 }
 
+// No two loops of bowel are pressed flat so far; another wall hardly counts.
+TEST(CourseDoubts, AWideWallBetweenLoopsIsDoubted) {
+    const auto walled = [](double mm2) {
+        ColonRecord record = wholeColon();
+        record.walls.push_back({.areaMm2 = mm2, .betweenLoops = true});
+        return confidence(record);
+    };
+    EXPECT_GT(walled(400.0), 0.95);
+    EXPECT_LT(walled(9000.0), 0.65);
+}
+
 }  // namespace

@@ -93,6 +93,31 @@ TEST(TaggedStool, ACrumbInGasIsOfTheLumenThoughItHasNoInside) {
     EXPECT_EQ(scene.taggedShare(inCrumb), 1.0);
 }
 
+// Where it is cut into lobes each touches the other, one is as wide as bowel, and neither is judged
+// by itself; what the lumen sees little of is no stool all the same.
+TEST(TaggedStool, ALumpOfLobesIsJudgedAsOne) {
+    const auto inLobes = [](glm::ivec3 v) {
+        const glm::dvec3 p(v);
+        return v.z >= wallBelow && (glm::distance(p, {9.0, 12.0, wallBelow + 3.0}) < 5.0 ||
+                                    glm::distance(p, {15.0, 12.0, wallBelow + 3.0}) < 4.0);
+    };
+    const auto shareOf = [&](bool buried) {
+        Scene scene(LumenLabel::air);
+        scene.put(500, segmentation::Content::tagged, inLobes);
+        segmentation::OtherMaterial other;
+        scene.each([&](std::size_t n, glm::ivec3 v) {
+            if (inLobes(v)) (v.x < 13 ? other.bowel : other.aside).push_back(std::uint32_t(n));
+            if (buried && !inLobes(v) && v.z < wallBelow + 6) {
+                scene.hu.writable()[n] = 40, scene.labels.writable()[n] = 0;
+                scene.contents.content.writable()[n] = std::uint8_t(segmentation::Content::tissue);
+            }
+        });
+        return scene.taggedShare(inLobes, other);
+    };
+    EXPECT_EQ(shareOf(false), 1.0);
+    EXPECT_EQ(shareOf(true), 0.0);
+}
+
 // Nothing is between a film and the gas but their blur.
 TEST(TaggedStool, AFilmOnTheWallIsOfTheLumen) {
     Scene scene(LumenLabel::air);

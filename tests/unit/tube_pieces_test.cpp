@@ -3,6 +3,8 @@
 
 #include "segmentation/bowel_contents.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 using namespace haustra;
@@ -53,6 +55,34 @@ TEST(TubePieces, FourSideBySideAreOneLumen) {
         voxels += piece == 0;
     EXPECT_EQ(cut.pieces[0].voxels, voxels);
     EXPECT_NEAR(cut.pieces[0].volumeMl, 4 * 25.4 - 5.0, 5.0);
+}
+
+// Settled tagging grows denser downwards, in layers, and is no less even for it; what does so
+// upwards, or sideways, is uneven.
+TEST(TubePieces, LayersOfSedimentAreEven) {
+    const auto coreSdHu = [](glm::dvec3 huPerMm, segmentation::GravityAxis down) {
+        const Grid grid = axisAlignedGrid({40, 40, 40}, glm::dvec3(1.0), {-20, -20, -20});
+        Volume<std::int16_t> hu(grid, std::int16_t(40));
+        Volume<std::uint8_t> content(grid, std::uint8_t(Content::tissue)),
+            walls(grid, std::uint8_t(0));
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            const glm::dvec3 p = grid.patientFromVoxelPoint(grid.voxelAt(n));
+            if (glm::length(p) > 15.0) continue;
+            hu.writable()[n] = std::int16_t(std::lround(700.0 + glm::dot(huPerMm, p)));
+            content.writable()[n] = std::uint8_t(Content::tagged);
+        }
+        const TubePieces cut = cutIntoPieces(hu, content, walls, {.down = down});
+        EXPECT_EQ(cut.pieces.size(), 1u);
+        EXPECT_NEAR(cut.pieces[0].coreHu, 700.0, 1.0);
+        return cut.pieces[0].coreSdHu;
+    };
+    EXPECT_LT(coreSdHu({0, 12, 0}, {1, 1}), 1.0);
+    EXPECT_LT(coreSdHu({0, -12, 0}, {1, -1}), 1.0);
+    EXPECT_LT(coreSdHu({12, 0, 0}, {0, 1}), 1.0);
+    const double all = 12.0 * 12.5 / std::sqrt(5.0);  // of a ball of that radius
+    EXPECT_NEAR(coreSdHu({0, -12, 0}, {1, 1}), all, 3.0);
+    EXPECT_NEAR(coreSdHu({12, 0, 0}, {1, 1}), all, 3.0);
+    EXPECT_NEAR(coreSdHu({0, 0, 12}, {1, 1}), all, 3.0);
 }
 
 }  // namespace

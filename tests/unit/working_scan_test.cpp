@@ -18,12 +18,25 @@ Level levelOf(int fromX, int toX, double fluidHu) {
     return level;
 }
 
+// What is marked in them is theirs, also where the box is the whole grid.
+TEST(CroppedContents, AreACopyThatCanBeWrittenTo) {
+    BowelContents contents;
+    const Grid grid = axisAlignedGrid({6, 5, 4}, {1, 1, 1});
+    contents.content = Volume<std::uint8_t>(grid, std::uint8_t(Content::gas));
+    for (const VoxelBox& box : {VoxelBox{{0, 0, 0}, grid.size}, VoxelBox{{1, 0, 0}, {4, 5, 4}}}) {
+        BowelContents part = cropped(contents, box, 1);
+        ASSERT_EQ(part.content.writable().size(), part.content.grid().voxelCount());
+        part.content.writable()[0] = std::uint8_t(Content::untagged);
+        EXPECT_EQ(Content(contents.content[contents.content.grid().index(box.lo)]), Content::gas);
+    }
+}
+
 // Of the scan's levels all stay, as they tell what its fluid is; of their columns those within.
 TEST(CroppedContents, HaveAllLevelsAndTheBoxesColumns) {
     BowelContents contents;
     contents.content =
         Volume<std::uint8_t>(axisAlignedGrid({20, 10, 4}, {1, 2, 1}), std::uint8_t(Content::gas));
-    contents.down = {1, 1};
+    contents.down = {1, 1, {}};
     contents.levels = {levelOf(2, 5, 300.0), levelOf(8, 11, 400.0), levelOf(14, 17, 500.0)};
     const VoxelBox box{{0, 2, 0}, {10, 8, 4}};
     const BowelContents part = cropped(contents, box, 1);

@@ -1108,6 +1108,10 @@
         <source>%1 ml of the colon are joined to nothing, and were left out</source>
         <translation>%1 ml des Kolons hängen mit nichts zusammen und wurden ausgelassen</translation>
     </message>
+    <message>
+        <source>the wall is %1 mm thick all around from %2 to %3 mm, but the lumen is %4 mm wide: other bowel may lie around it, or it is inflamed</source>
+        <translation>Die Wand ist von %2 bis %3 mm ringsum %1 mm dick, aber das Lumen ist %4 mm weit: Anderer Darm kann ringsum anliegen, oder sie ist entzündet</translation>
+    </message>
 </context>
 <context>
     <name>haustra::window::BookmarkPanel</name>
