@@ -48,6 +48,8 @@ public:
     void set(std::vector<PlaceRuler> rulers);
     /// The first end, while the second is awaited.
     const std::optional<PlaceRuler::End>& begun() const { return begun_; }
+    /// Whether it is known, or asked for.
+    bool isBegun() const { return begun_ || !ends_.empty(); }
     /// What is begun is given up.
     void giveUp();
     /// Those before a ruler that has been made since the last call, for whoever undoes it.

@@ -9,8 +9,9 @@ namespace haustra::reader {
 namespace {
 
 // An end is a place of the wall, or of the scan beside it: what is met this near to it is the wall
-// there, by the voxels' size and what smoothing has moved.
-constexpr double atEndMm = 2.0;
+// there, by the voxels' size and what smoothing has moved; or this share of the way, as a ray along
+// the wall meets the drawn mucosa before the mesh.
+constexpr double atEndMm = 2.0, atEndShare = 0.06;
 constexpr std::size_t mostAsked = 8;
 
 }  // namespace
@@ -30,7 +31,8 @@ SeenEnds::Answer* SeenEnds::answerOf(glm::dvec3 end) {
 void SeenEnds::ask(glm::dvec3 end) {
     due_.push_back(end);
     asked_.push_back(
-        {wall_.expect(session_.pick(camera_->positionMm, end - camera_->positionMm)), end});
+        {wall_.expect(session_.pick(camera_->positionMm, end - camera_->positionMm, true)), end,
+         camera_->positionMm});
 }
 
 void SeenEnds::update(const Camera* resting, std::span<const glm::dvec3> ends) {
@@ -38,13 +40,17 @@ void SeenEnds::update(const Camera* resting, std::span<const glm::dvec3> ends) {
         const auto told = wall_.takeTold(asked.request);
         if (!told) return false;
         if (!asked.counts) return true;
-        const bool seen = *told && glm::distance((*told)->positionMm, asked.end) <= atEndMm;
+        const double farMm = glm::distance(asked.fromMm, asked.end);
+        const bool seen = *told && glm::distance((*told)->positionMm, asked.end) <=
+                                       std::max(atEndMm, atEndShare * farMm);
         if (Answer* before = answerOf(asked.end))
             before->seen = seen;
         else
             answers_.push_back({asked.end, seen});
         return true;
     });
+    // What was asked over a link that was lost may have been refused.
+    if (session_.phase() != Phase::open) camera_.reset();
     if (!resting || session_.phase() != Phase::open ||
         !session_.serverCan(protocol::capability::pick))
         return;

@@ -34,7 +34,7 @@ private:
     };
     struct Asked {
         std::uint64_t request = 0;
-        glm::dvec3 end{0.0};
+        glm::dvec3 end{0.0}, fromMm{0.0};
         bool counts = true;  // of the camera that rests now
     };
     Answer* answerOf(glm::dvec3 end);

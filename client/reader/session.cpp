@@ -366,7 +366,10 @@ void Session::refused(const protocol::ErrorReport& report) {
 }
 
 void Session::refuse(std::uint64_t request, const Error& error) {
+    const auto asked = questions_.find(request);
+    const bool quiet = asked != questions_.end() && asked->second.quiet;
     refuseQuestion(request, error);
+    if (quiet) return;
     // Nobody reads more at a time.
     constexpr std::size_t maxRefusals = 16;
     if (refusals_.size() < maxRefusals) refusals_.push_back(error);
@@ -660,8 +663,11 @@ std::uint64_t Session::locate(glm::dvec2 flat) {
 std::uint64_t Session::locate(glm::dvec3 positionMm) {
     return ask(locateMessage(++request_, positionMm));
 }
-std::uint64_t Session::pick(glm::dvec3 positionMm, glm::dvec3 direction) {
-    return ask(pickMessage(++request_, positionMm, direction));
+std::uint64_t Session::pick(glm::dvec3 positionMm, glm::dvec3 direction, bool quietly) {
+    const std::uint64_t request = ask(pickMessage(++request_, positionMm, direction));
+    if (const auto asked = questions_.find(request); asked != questions_.end())
+        asked->second.quiet = quietly;
+    return request;
 }
 std::uint64_t Session::askSeen(bool forget) {
     tellShown();

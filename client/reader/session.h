@@ -211,8 +211,9 @@ public:
     std::uint64_t locate(glm::dvec3 positionMm);
     std::uint64_t measure(const std::vector<glm::dvec2>& points, bool closed);
     /// The first place of the wall that a ray from a camera (core's rayThrough) meets. Of any case;
-    /// of a server without protocol::capability::pick, as measureScan.
-    std::uint64_t pick(glm::dvec3 positionMm, glm::dvec3 direction);
+    /// of a server without protocol::capability::pick, as measureScan. Quietly: for what no hand
+    /// has asked, so that nobody is told of a refusal.
+    std::uint64_t pick(glm::dvec3 positionMm, glm::dvec3 direction, bool quietly = false);
     struct WallAnswer {
         std::uint64_t request;
         Result<std::variant<WallPlace, FlatMeasure>> body;
@@ -249,6 +250,7 @@ private:
         protocol::ClientMessage message;
         int lostLinks = 0;  // over which it was asked in vain
         Clock::time_point saidAt = {};
+        bool quiet = false;  // nobody is told that it was refused
     };
     struct Owed {
         std::string caseName;

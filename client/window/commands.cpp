@@ -121,7 +121,7 @@ void resizeLens(ReaderWindow& w, double factor) {
 
 // The first end of a ruler is no step yet.
 void undo(ReaderWindow& w) {
-    if (w.reader().rulers().begun())
+    if (w.reader().rulers().isBegun())
         w.reader().rulers().giveUp();
     else
         w.reading().undoStack().undo();
@@ -130,7 +130,7 @@ void undo(ReaderWindow& w) {
 // One thing at a time, the nearest first.
 void stop(ReaderWindow& w) {
     if (w.showsCases()) return w.showCases();
-    if (w.reader().rulers().begun()) return w.reader().rulers().giveUp();
+    if (w.reader().rulers().isBegun()) return w.reader().rulers().giveUp();
     if (w.reading().tool() != DrawingTool::none) return w.reading().setTool(DrawingTool::none);
     if (w.pointsByKeys()) return w.togglePointing();
     if (w.reader().lens().isOn()) return w.reader().lens().setOn(false);
@@ -920,7 +920,7 @@ void CommandSet::look() {
     actions_.at("connect-again")
         ->setEnabled(window_.reader().session().phase() == reader::Phase::failed);
     const QUndoStack& stack = window_.reading().undoStack();
-    const bool begun = open && window_.reader().rulers().begun();
+    const bool begun = open && window_.reader().rulers().isBegun();
     const QString undone =
         begun ? QCoreApplication::translate("Commands", "first end of a ruler") : stack.undoText();
     for (const auto& [id, can, what] : {std::tuple{"undo", begun || stack.canUndo(), undone},

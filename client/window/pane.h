@@ -189,8 +189,6 @@ void paintPlaceMark(QPainter& painter, QPointF at);
 void paintBookmarkFlag(QPainter& painter, QPointF foot);
 /// A line with a dark outline.
 void outlinedPolyline(QPainter& painter, const QPolygonF& line, bool closed, const QColor& color);
-/// A line between two places, with its ends; dashed where it does not lie in the picture's plane.
-/// `text`, which may be empty, stands below it, within `area`.
 /// "8.2 mm", of a finding's diameter with its number.
 QString textOf(const reader::PlaceRuler& ruler);
 /// Rulers of a picture, each with its text beside it where that lies on no other's.
@@ -198,6 +196,8 @@ class RulerTexts {
 public:
     /// Texts stay within `area`.
     RulerTexts(QPainter& painter, const QRectF& area) : painter_(painter), area_(area) {}
+    /// A line between two places, with its ends; dashed where it does not lie in the picture's
+    /// plane, or a wall stands before one of them. `text` may be empty.
     void paint(QPointF from, QPointF to, bool dashed, const QString& text);
 
 private:

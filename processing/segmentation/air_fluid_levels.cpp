@@ -199,6 +199,8 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
 
     // Patches: neighbours in the horizontal plane (8 of them) whose heights differ by at most one.
     const int across = 1 - down.axis;
+    // Of an oblique grid a plane's columns are whole voxels, off it by half of one.
+    const double mostStep = down.slope == glm::dvec2(0.0) ? 1.0 : 1.5;
     const std::size_t width = std::size_t(grid.size[across]);
     std::unordered_map<std::size_t, std::vector<int>> atPlace;
     for (std::size_t n = 0; n < columns.size(); ++n) {
@@ -213,12 +215,16 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
             const auto found = atPlace.find(std::size_t(n) + width * std::size_t(z));
             if (found == atPlace.end()) continue;
             for (const int other : found->second) {
-                const int height = columns[std::size_t(other)].below[down.axis];
-                if (std::abs(height - c.below[down.axis]) <= 1) visit(other);
+                const double height = down.heightOf(columns[std::size_t(other)].below);
+                if (std::abs(height - down.heightOf(c.below)) <= mostStep) visit(other);
             }
         }
     };
     const glm::dvec3 spacing = grid.spacingMm();
+    // Of the level plane, which lies aslant in an oblique grid.
+    const glm::dvec2 climb =
+        spacing[down.axis] * down.slope / glm::dvec2(spacing[across], spacing.z);
+    const double columnMm2 = spacing[across] * spacing.z * std::sqrt(1.0 + glm::dot(climb, climb));
     std::vector<char> visited(columns.size(), 0);
     std::vector<Level> levels;
     for (std::size_t seed = 0; seed < columns.size(); ++seed) {
@@ -233,7 +239,7 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
         std::vector<LevelColumn> patch;
         for (const int n : members)
             patch.push_back(columns[std::size_t(n)]);
-        keepIfFlat(patch, hu, tissue, down, spacing[across] * spacing.z, levels);
+        keepIfFlat(patch, hu, tissue, down, columnMm2, levels);
     }
     return levels;
 }

@@ -686,7 +686,8 @@ void measure(TubePieces& cut, std::size_t count, const Volume<std::int16_t>& hu,
             if (own == Content::tagged) ++tally.taggedVoxels, tally.taggedHu += hu[n];
             tally.untaggedVoxels += own == Content::untagged;
             const float mm = cut.distanceMm[n];
-            if (isCore(content[n], mm)) tally.core.add(hu[n], down.sign * v[down.axis]);
+            if (isCore(content[n], mm))
+                tally.core.add(hu[n], down.sign * std::lround(down.heightOf(v)));
             if (mm > tally.radiusMm) tally.radiusMm = mm, tally.center = v;
             visitFaces(grid, n, v, [&](std::size_t m, int axis) {
                 if (label[m] == l) return;

@@ -36,13 +36,13 @@ WallPlace placeBeside(const OpenCase& of, const PickRay& ray, const MetTriangle&
 
 /// The wall beside what a ray meets as tissue well before the wall itself: the mucosa is drawn some
 /// tenths of a millimetre in front of the mesh, so that a click on the rim of a head meets the wall
-/// behind it. Empty where none is that near, as of residue that stands free.
-Result<std::optional<WallPlace>> rimBefore(const OpenCase& of, const PickRay& ray, double wayMm) {
+/// behind it. Empty where none is that near, as of residue that stands free, and where the scan is
+/// damaged.
+std::optional<WallPlace> rimBefore(const OpenCase& of, const PickRay& ray, double wayMm) {
     constexpr double beforeMm = 2.0, besideMm = 1.0;
     const auto& shown = of.cleansedScan ? of.cleansedScan : of.ct;
     const auto tissue = firstTissue(*shown, ray);
-    if (!store::isWhole(shown->voxels().data()))
-        return fail(ErrorKind::io, "the scan was cut short, or its disk fails", of.name);
+    if (!store::isWhole(shown->voxels().data())) return std::nullopt;
     const double tissueMm = tissue ? glm::distance(ray.fromMm, *tissue) : INFINITY;
     if (tissueMm == 0.0 || tissueMm > wayMm - beforeMm) return std::nullopt;
     const WallPlace rim = of.wall->lookup.nearest(*tissue);
@@ -53,8 +53,8 @@ Result<std::optional<WallPlace>> rimBefore(const OpenCase& of, const PickRay& ra
 Result<CaseAnswer> answerTo(const OpenCase& of, const PickRay& ray) {
     if (of.wall) {
         if (const auto met = of.wall->painter->sight().firstMet(ray.fromMm, ray.direction)) {
-            const auto rim = TRY(rimBefore(of, ray, glm::distance(ray.fromMm, met->positionMm)));
-            if (rim) return *rim;
+            if (const auto rim = rimBefore(of, ray, glm::distance(ray.fromMm, met->positionMm)))
+                return *rim;
             const auto place = of.wall->lookup.at(met->flat);
             return place ? *place : of.wall->lookup.nearest(met->positionMm);
         }
