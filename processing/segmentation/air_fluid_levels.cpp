@@ -182,6 +182,37 @@ void keepIfFlat(const std::vector<LevelColumn>& patch, const Volume<std::int16_t
     levels.push_back(std::move(level));
 }
 
+constexpr int flatVoxels = 3, widestEdge = 6;  // of gas and of tissue; of what lies between
+
+/// The middle half of the way from gas to soft tissue.
+struct MiddleHalf {
+    double softHu, fromHu, toHu;
+
+    explicit MiddleHalf(const TissueModel& tissue) : softHu(tissue.meanHu[int(Tissue::soft)]) {
+        const double gas = tissue.meanHu[int(Tissue::air)];
+        fromHu = gas + 0.25 * (softHu - gas), toHu = gas + 0.75 * (softHu - gas);
+    }
+
+    /// How many steps a line takes over it from `first` on, the first beyond gas. Empty where it
+    /// falls, or does not end in soft tissue.
+    template <class HuAt>
+    std::optional<double> steps(int first, const HuAt& huAt) const {
+        constexpr double nearHu = 80.0;
+        std::optional<double> from;
+        for (int step = first; step < first + widestEdge; ++step) {
+            const double last = huAt(step - 1), here = huAt(step);
+            if (here <= last) return std::nullopt;
+            const auto reached = [&](double hu) { return step + (hu - last) / (here - last); };
+            if (!from && here > fromHu) from = reached(fromHu);
+            if (here <= toHu) continue;
+            for (int more = 1; more <= flatVoxels; ++more)
+                if (std::abs(huAt(step + more) - softHu) > nearHu) return std::nullopt;
+            return reached(toHu) - *from;
+        }
+        return std::nullopt;
+    }
+};
+
 }  // namespace
 
 std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
@@ -247,49 +278,30 @@ std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel&
 std::optional<double> edgeWidthMm(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                                   const Volume<std::uint8_t>& content, int axis) {
     constexpr std::size_t leastEdges = 100;
-    constexpr int flat = 3, widest = 6;  // voxels of gas, and of what lies between it and tissue
-    constexpr double nearHu = 80.0;      // of soft tissue
     const Grid& grid = hu.grid();
-    const double gas = tissue.meanHu[int(Tissue::air)], soft = tissue.meanHu[int(Tissue::soft)];
-    const double quarter = gas + 0.25 * (soft - gas), most = gas + 0.75 * (soft - gas);
+    const MiddleHalf middle(tissue);
     // Some lines are enough.
     const int slices = std::max(1, grid.size.z / 64),
-              lines = std::max(1, grid.size[1 - axis] / 128);
+              lines = std::max(1, grid.size[1 - axis] / 128), length = grid.size[axis];
     std::vector<double> widths;
     for (int k = 0; k < grid.size.z; k += slices) {
         for (int n = 0; n < grid.size[1 - axis]; n += lines) {
-            glm::ivec3 v(0, 0, k);
-            v[1 - axis] = n;
-            const auto at = [&](int step) {
-                v[axis] = step;
-                return grid.index(v);
-            };
             for (const int sign : {-1, 1}) {
                 const auto voxel = [&](int step) {
-                    return at(sign > 0 ? step : grid.size[axis] - 1 - step);
+                    glm::ivec3 v(0, 0, k);
+                    v[1 - axis] = n, v[axis] = sign > 0 ? step : length - 1 - step;
+                    return grid.index(v);
                 };
                 int run = 0;
-                for (int step = 0; step + widest + flat < grid.size[axis]; ++step) {
-                    if (Content(content[voxel(step)]) == Content::gas &&
-                        hu[voxel(step)] < quarter) {
+                for (int step = 0; step + widestEdge + flatVoxels < length; ++step) {
+                    const bool isGas = Content(content[voxel(step)]) == Content::gas &&
+                                       hu[voxel(step)] < middle.fromHu;
+                    if (isGas)
                         ++run;
-                        continue;
-                    }
-                    if (std::exchange(run, 0) < flat) continue;
-                    double from = -1.0, to = -1.0;
-                    for (int beyond = 0; beyond < widest && to < 0.0; ++beyond) {
-                        const double last = hu[voxel(step + beyond - 1)],
-                                     here = hu[voxel(step + beyond)];
-                        if (here <= last) break;
-                        if (from < 0.0 && here > quarter)
-                            from = beyond + (quarter - last) / (here - last);
-                        if (here > most) to = beyond + (most - last) / (here - last);
-                        if (to >= 0.0)
-                            for (int more = 1; more <= flat; ++more)
-                                if (std::abs(hu[voxel(step + beyond + more)] - soft) > nearHu)
-                                    to = -1.0, beyond = widest;
-                    }
-                    if (to >= 0.0) widths.push_back((to - from) * grid.spacingMm()[axis]);
+                    else if (std::exchange(run, 0) >= flatVoxels)
+                        if (const auto steps =
+                                middle.steps(step, [&](int at) { return double(hu[voxel(at)]); }))
+                            widths.push_back(*steps * grid.spacingMm()[axis]);
                 }
             }
         }

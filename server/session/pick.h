@@ -1,4 +1,5 @@
-// What a ray of the endoscopic view meets, where the case has no flattened wall to ask.
+// What a ray of the endoscopic view meets where the case has no flattened wall to ask, or before
+// it.
 #pragma once
 
 #include "core/tri_mesh.h"
