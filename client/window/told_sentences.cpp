@@ -182,8 +182,11 @@ constexpr const char* sentences[] = {
                       "a wall of %1 mm2 was set up, beyond which gas and fluid were taken for "
                       "other bowel; they may be the colon's, at %2"),
     QT_TRANSLATE_NOOP("ToldSentences",
-                      "%1 ml of fluid without tagging were taken out of the %2; its wall shows "
-                      "little contrast and may lie elsewhere by millimetres"),
+                      "%1 ml of fluid of little or no tagging were taken out of the %2; its wall "
+                      "shows little contrast and may lie elsewhere by millimetres"),
+    QT_TRANSLATE_NOOP("ToldSentences",
+                      "%1 ml of what was taken for tagged residue look like tissue once cleansed, "
+                      "and are no part of the lumen, at %2"),
     QT_TRANSLATE_NOOP("ToldSentences",
                       "%1 ml of gas stand in the lumen of the %2 behind a wall of their own, as in "
                       "a catheter's balloon; both were taken out, at %3"),

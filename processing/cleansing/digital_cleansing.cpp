@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -156,6 +157,45 @@ std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& a
     return shares;
 }
 
+std::vector<LostLumen> lostLumen(const Volume<std::uint8_t>& segmented,
+                                 const Volume<std::uint8_t>& open) {
+    constexpr double deepMm = 2.5, leastMl = 2.0;
+    const Grid& grid = segmented.grid();
+    const Ball ball(grid, glm::dvec3(deepMm));
+    const auto isLumen = [&](std::size_t n) {
+        return LumenLabel(segmented[n]) != LumenLabel::outside;
+    };
+    std::vector<bool> left(grid.voxelCount(), false);  // an eighth of a byte each
+    std::vector<std::size_t> deep;
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        if (LumenLabel(segmented[n]) != LumenLabel::tagged ||
+            LumenLabel(open[n]) != LumenLabel::outside ||
+            !ball.everywhere(grid.voxelAt(n), isLumen))
+            continue;
+        left[n] = true;
+        deep.push_back(n);
+    }
+    std::vector<LostLumen> all;
+    for (const std::size_t seed : deep) {
+        if (!left[seed]) continue;
+        left[seed] = false;
+        std::vector<std::size_t> body{seed};
+        floodFill(body, cornerNeighbours(grid), [&](std::size_t n) {
+            const bool is = left[n];
+            left[n] = false;
+            return is;
+        });
+        const double ml = double(body.size()) * grid.voxelVolumeMm3() / 1000.0;
+        if (ml < leastMl) continue;
+        glm::dvec3 sum(0.0);
+        for (const std::size_t n : body)
+            sum += glm::dvec3(grid.voxelAt(n));
+        all.push_back({grid.patientFromVoxelPoint(sum / double(body.size())), ml});
+    }
+    std::ranges::stable_sort(all, std::greater<>(), &LostLumen::ml);
+    return all;
+}
+
 }  // namespace
 
 Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
@@ -236,6 +276,7 @@ CleansedLumen cleanse(const CtScan& scan, const TissueModel& tissue,
     takeOutUntagged(hu, open, lumen.labels, tissue.meanHu[int(Tissue::air)], threads);
 
     CleansedLumen cleansed;
+    cleansed.lost = lostLumen(lumen.labels, open);
     cleansed.hu = {lumen.scanGrid, lumen.box, std::move(hu), {}};
     cleansed.lumen = {lumen.scanGrid, lumen.box, std::move(open), {}};
     cleansed.hu.beyond = [enhancement = std::move(lumen.enhancement),

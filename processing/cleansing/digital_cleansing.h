@@ -7,6 +7,8 @@
 #include "core/result.h"
 #include "core/tissue.h"
 
+#include <vector>
+
 namespace haustra::cleansing {
 
 struct Cleansed {
@@ -28,10 +30,19 @@ Result<Cleansed> cleanse(const CtScan& scan, const TissueModel& tissue,
                          const Volume<TissueFractions>& mixture,
                          const Volume<std::uint8_t>& segmentation, int threads = 0);
 
+/// A body of what the segmentation took for tagged, with more of its lumen all around it than the
+/// blur reaches, that is wall once it is cleansed: fluid of too little contrast, or tissue.
+struct LostLumen {
+    glm::dvec3 placeMm{0.0};  ///< its middle
+    double ml = 0.0;
+};
+
 /// The same with the lumen's box alone held.
 struct CleansedLumen {
     BoxedVolume<std::int16_t> hu;
     BoxedVolume<std::uint8_t> lumen;
+    /// 2 ml and more, the largest first: what covers a polyp, or a coated one, is less.
+    std::vector<LostLumen> lost;
 };
 
 /// The same of what measureTaggedLumen has measured; beyond its box HU follow from the scan, whose

@@ -23,6 +23,7 @@ constexpr double leastEdgeHu = 4.0;
 constexpr double fewestSamples = 500.0;
 constexpr double wallMm = 1.5;  // so deep beyond the blur what is around the lumen is looked at
 constexpr double wallSlabMm = 20.0;  // what surrounds the colon there is taken as independent
+constexpr double mostOfContrast = 1.0 / 3.0;  // of contents over soft tissue, for their own gain
 // Of the HU that count as wall: fat's do, gas' and cortical bone's do not.
 constexpr double belowSoftHu = 250.0, aboveSoftHu = 200.0;
 
@@ -130,6 +131,28 @@ Slope wallSlope(const std::vector<SliceLines>& slices, std::size_t at, double sl
     return slopeOf(slabs);
 }
 
+/// Mean HU of the tagged contents, without what is no denser than soft tissue.
+double meanTaggedHu(const CtScan& scan, const Volume<std::uint8_t>& segmentation, double softHu,
+                    int threads) {
+    const Grid& grid = scan.hu.grid();
+    const std::size_t perSlice = std::size_t(grid.size.x) * std::size_t(grid.size.y);
+    struct Sum {
+        std::int64_t hu = 0, count = 0;
+    };
+    std::vector<Sum> sums(std::size_t(grid.size.z));
+    parallelFor(sums.size(), 4, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin * perSlice; n < end * perSlice; ++n) {
+            if (LumenLabel(segmentation[n]) != LumenLabel::tagged || scan.hu[n] <= softHu) continue;
+            Sum& sum = sums[n / perSlice];
+            sum.hu += scan.hu[n], ++sum.count;
+        }
+    });
+    Sum all;
+    for (const Sum& sum : sums)
+        all.hu += sum.hu, all.count += sum.count;
+    return all.count > 0 ? double(all.hu) / double(all.count) : softHu;
+}
+
 }  // namespace
 
 void PseudoEnhancement::takeOff(glm::ivec3 first, std::span<std::int16_t> row) const {
@@ -218,6 +241,8 @@ PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel
     }
     const Slope wall = wallSlope(slices, at, std::max(1.0, wallSlabMm / grid.spacingMm().z));
     best.gain = std::min(best.gain, std::max(0.0, wall.value + 2.0 * wall.error));
+    const double taggedHu = meanTaggedHu(scan, segmentation, softHu, threads);
+    best.gain = std::min(best.gain, mostOfContrast * (taggedHu - softHu) / (taggedHu - airHu));
     if (best.edgeHu() < leastEdgeHu) return {};
     best.excessHu = std::move(fields[at]), best.begin = begin;
     return best;

@@ -4,6 +4,7 @@
 #include "cleansing/untagged_fluid.h"
 #include "pipeline/product_attributes.h"
 #include "pipeline/stages.h"
+#include "segmentation/told_places.h"
 
 namespace haustra::pipeline {
 namespace {
@@ -12,7 +13,7 @@ namespace product = store::product;
 using store::Attributes;
 
 // Raise them whenever the products change for the same input.
-constexpr int mixtureVersion = 15, cleansingVersion = 14;
+constexpr int mixtureVersion = 16, cleansingVersion = 15;
 
 // What both start from, mapped.
 struct SegmentedScan {
@@ -28,6 +29,18 @@ Result<SegmentedScan> readSegmentedScan(StageCase& stage) {
     const auto attributes = TRY(stage.attributes(product::segmentation));
     const auto tissue = TRY(tissueModelOf(attributes));
     return SegmentedScan{std::move(scan), std::move(labels), tissue, gravityOf(attributes)};
+}
+
+std::vector<std::string> notesOn(const std::vector<cleansing::LostLumen>& lost) {
+    if (lost.empty()) return {};
+    double ml = 0.0;
+    segmentation::ToldPlaces places;
+    for (const cleansing::LostLumen& body : lost)
+        ml += body.ml, places.add(body.placeMm);
+    return {printed("warning: %.0f ml of what was taken for tagged residue look like tissue once "
+                    "cleansed, and are no part of the lumen, at ",
+                    ml) +
+            places.text()};
 }
 
 }  // namespace
@@ -83,8 +96,11 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
         progress(0.3);
         const auto input = TRY(readSegmentedScan(stage));
         const Attributes wall{{"air-below-hu", exactText(input.tissue.airBelowHu)}};
-        const auto publish = [&](const auto& labels, const auto& hu) {
-            return stage.publish(product::cleansedLumen, labels, wall).and_then([&] {
+        const auto publish = [&](const auto& labels, const auto& hu,
+                                 const std::vector<cleansing::LostLumen>& lost) {
+            Attributes ofLumen = wall;
+            setNotes(ofLumen, notesOn(lost));
+            return stage.publish(product::cleansedLumen, labels, ofLumen).and_then([&] {
                 return stage.publish(product::cleansed, hu, wall);
             });
         };
@@ -96,7 +112,7 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
                 cleansing::takeOutUntagged(hu, labels, input.labels,
                                            input.tissue.meanHu[int(Tissue::air)], threads);
             }
-            return publish(input.labels, hu);
+            return publish(input.labels, hu, {});
         }
         const auto cleansed =
             TRY(stage.readVolume<TissueFractions>(product::mixture)
@@ -105,7 +121,7 @@ Result<ProductKey> cleanseScan(Preparation& preparation, const ProductKey& ct,
                                                   std::move(*lumen), threads);
                     }));
         progress(0.8);
-        return publish(cleansed.lumen, cleansed.hu);
+        return publish(cleansed.lumen, cleansed.hu, cleansed.lost);
     });
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double cellMm = 4.0;
 constexpr double outsideReachMm = 6.0;
 constexpr double lungAboveGasHu = 60.0, lungBelowHu = -550.0;
-constexpr double smallestLungMl = 50.0;
+constexpr double smallestLungMl = 50.0, lungFromTopMm = 40.0;
 
 /// The scan in cubes of about 4 mm, by what of them lies in the field of view.
 struct Cells {
@@ -208,9 +208,35 @@ SideAir sideAir(const Cells& cells, bool roundField) {
     return air;
 }
 
-// Cells of a mean HU well above gas, in bodies thicker than the partial volume at a wall.
+/// How far a cell lies beneath the scan's cranial end, mm.
+class BeneathTop {
+public:
+    BeneathTop(const Grid& grid, const Cells& cells) : cells_(cells) {
+        double along = 0.0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double z = grid.patientFromVoxel[axis].z;
+            if (std::abs(z) > std::abs(along)) along = z, axis_ = axis;
+        }
+        isLastTop_ = along > 0.0;
+        cellMm_ = grid.spacingMm()[axis_] * cells.block[axis_];
+    }
+    double operator()(std::size_t cell) const {
+        const int at = cells_.grid.voxelAt(cell)[axis_];
+        return cellMm_ * (isLastTop_ ? cells_.grid.size[axis_] - 1 - at : at);
+    }
+
+private:
+    const Cells& cells_;
+    int axis_ = 2;
+    bool isLastTop_ = true;
+    double cellMm_ = 0.0;
+};
+
+// Cells of a mean HU well above gas, in bodies thicker than the partial volume at a wall, which
+// come from the scan's top, as of an abdomen the lungs do. Others are bowel's: scatter in a large
+// body, or foam, makes its gas as bright.
 std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::uint8_t>& outside,
-                                    double gasHu) {
+                                    double gasHu, const BeneathTop& beneathTopMm) {
     const auto lungLike = [&](std::size_t n) {
         return !outside[n] && cells.meanHu[n] > gasHu + lungAboveGasHu &&
                cells.meanHu[n] < lungBelowHu;
@@ -232,7 +258,11 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
             seen[m] = 1;
             return true;
         });
-        if (double(body.size()) * cells.cellMl < smallestLungMl) continue;
+        const bool isLung = double(body.size()) * cells.cellMl >= smallestLungMl &&
+                            std::ranges::any_of(body, [&](std::size_t m) {
+                                return beneathTopMm(m) <= lungFromTopMm;
+                            });
+        if (!isLung) continue;
         for (const std::size_t m : body)
             lung[m] = 1;
     }
@@ -439,7 +469,7 @@ BowelContents findContents(const Volume<std::int16_t>& hu, const FieldOfView& fi
     const std::vector<std::uint8_t> outside =
         flood(cells, atSides.room, [&](std::size_t n) { return cells.allAir[n] != 0; });
     const std::vector<std::uint8_t> lung =
-        lungCells(cells, outside, tissue.meanHu[int(Tissue::air)]);
+        lungCells(cells, outside, tissue.meanHu[int(Tissue::air)], BeneathTop(grid, cells));
     BowelContents contents;
     contents.enclosedRoomAir = enclosedRoomAir(cells, grid, atSides.room, outside);
     contents.content = Volume<std::uint8_t>(grid);

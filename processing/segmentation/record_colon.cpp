@@ -508,10 +508,11 @@ private:
         for (const auto& [part, ml] : untaggedMl) {
             constexpr double tellMl = 1.0;
             if (ml > tellMl)
-                say(printed(
-                    "%.0f ml of fluid without tagging were taken out of the %s; its wall shows "
-                    "little contrast and may lie elsewhere by millimetres",
-                    ml, toString(part)));
+                say(
+                    printed("%.0f ml of fluid of little or no tagging were taken out of the %s; "
+                            "its wall shows "
+                            "little contrast and may lie elsewhere by millimetres",
+                            ml, toString(part)));
         }
         for (const EnclosedGas& gas : labels_.enclosed)
             say(printed(

@@ -37,7 +37,10 @@ class PoolSearch {
 public:
     PoolSearch(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                const BowelContents& contents, const UntaggedLevel& level, Reach reach, int threads)
-        : level_(level), down_(contents.down), threads_(threads) {
+        : level_(level),
+          isWeak_(level.fluidHu > tissue.meanHu[int(Tissue::soft)]),
+          down_(contents.down),
+          threads_(threads) {
         const Grid& whole = hu.grid();
         glm::ivec3 lo = level.columns.front(), hi = lo;
         for (const glm::ivec3 v : level.columns)
@@ -98,6 +101,10 @@ private:
     bool isGas(std::size_t n) const { return Content(content_[n]) == Content::gas; }
     bool isUntagged(std::size_t n) const { return Content(content_[n]) == Content::untagged; }
     bool isTissue(std::size_t n) const { return Content(content_[n]) == Content::tissue; }
+    /// Of weakly tagged fluid some voxels, by noise, are bright enough for tagged ones.
+    bool mayBeFluid(std::size_t n) const {
+        return isTissue(n) || (isWeak_ && Content(content_[n]) == Content::tagged);
+    }
     bool isTagged(glm::ivec3 v) const {
         return hu_.grid().contains(v) && Content(content_.at(v)) == Content::tagged;
     }
@@ -114,8 +121,10 @@ private:
         const Grid& grid = hu_.grid();
         const double softHu = tissue.meanHu[int(Tissue::soft)],
                      fatHu = tissue.meanHu[int(Tissue::fat)];
-        const double fromHu = 0.5 * (level_.fluidHu + fatHu),
-                     toHu = 0.5 * (level_.fluidHu + softHu);
+        // Fluid lies between fat and soft tissue in HU; with some tagging, over soft tissue.
+        const double fromHu = 0.5 * (level_.fluidHu + (isWeak_ ? softHu : fatHu)),
+                     toHu = isWeak_ ? level_.fluidHu + (level_.fluidHu - softHu)
+                                    : 0.5 * (level_.fluidHu + softHu);
         fluid_ = looksLike(smoothMm, fromHu, toHu, fatHu);
         centers_ = looksLike(centerSmoothMm, glm::mix(level_.fluidHu, fromHu, centerShare),
                              glm::mix(level_.fluidHu, toHu, centerShare), fatHu);
@@ -133,14 +142,14 @@ private:
                 inside[grid.index(v)] = blur[grid.index(v)] = 1;
         }
     }
-    /// Tissue whose HU, smoothed among tissue alone, lie between these.
+    /// What may be fluid and whose HU, smoothed among such alone, lie between these.
     Volume<std::uint8_t> looksLike(double sdMm, double fromHu, double toHu, double fatHu) const {
         constexpr int one = 1000, leastWeight = 200;
         const Grid& grid = hu_.grid();
         Volume<std::int16_t> value(grid, std::int16_t(0)), weight(grid, std::int16_t(0));
         const auto values = value.writable(), weights = weight.writable();
         for (std::size_t n = 0; n < values.size(); ++n) {
-            if (!isTissue(n) || hu_[n] < 2.0 * fatHu) continue;
+            if (!mayBeFluid(n) || hu_[n] < 2.0 * fatHu) continue;
             values[n] = hu_[n], weights[n] = one;
         }
         value = segmentation::smoothHu(value, sdMm, threads_);
@@ -149,7 +158,7 @@ private:
         const auto out = like.writable();
         for (std::size_t n = 0; n < out.size(); ++n) {
             if (isUntagged(n)) out[n] = 1;  // another level's pool, open to this one
-            if (!isTissue(n) || weight[n] < leastWeight) continue;
+            if (!mayBeFluid(n) || weight[n] < leastWeight) continue;
             const double meanHu = double(one) * value[n] / weight[n];
             out[n] = meanHu > fromHu && meanHu < toHu;
         }
@@ -331,6 +340,7 @@ private:
     }
 
     const UntaggedLevel& level_;
+    const bool isWeak_;  ///< took some tagging: brighter than soft tissue
     const GravityAxis down_;
     const int threads_;
     VoxelBox box_;
@@ -375,10 +385,8 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
         return false;
     };
     bool any = false;
-    for (const UntaggedLevel& level : levels) {
-        // Fluid as bright as a wall, or brighter, is not told from it: it is only told.
-        if (level.fluidHu < tissue.meanHu[int(Tissue::soft)]) any = mark(level) || any;
-    }
+    for (const UntaggedLevel& level : levels)
+        any = mark(level) || any;
     return any;
 }
 

@@ -56,8 +56,9 @@ Result<ColonTrust> readTrust(const Case& source) {
         for (std::string& warning : piecesPassedBy(path, pieces))
             first.push_back(std::move(warning));
     }
-    if (source.find(product::flatMap)) {
-        for (std::string& warning : warningsIn(TRY(source.attributes(product::flatMap))))
+    for (const std::string product : {product::cleansedLumen, product::flatMap}) {
+        if (!source.find(product)) continue;
+        for (std::string& warning : warningsIn(TRY(source.attributes(product))))
             first.push_back(std::move(warning));
     }
     trust->warnings.insert(trust->warnings.begin(), first.begin(), first.end());

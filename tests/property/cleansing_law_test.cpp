@@ -79,4 +79,40 @@ TEST(CleansingLaw, SmallPhantomBecomesItsUntaggedTwin) {
     EXPECT_GT(2.0 * double(both) / double(either), 0.97);
 }
 
+// What the segmentation takes for tagged by mistake is tissue once it is cleansed, and told.
+TEST(CleansingLaw, LumenThatIsTissueOnceCleansedIsTold) {
+    const glm::dvec3 middle(20.7, 20.55, 11.5);
+    for (const double radiusMm : {0.0, 5.0, 9.0}) {
+        Scene scene = makeScene({56, 56, 24}, 500.0, 15.0, [&](glm::dvec3 p) {
+            const double open = blurredStep(12.0 - glm::length(glm::dvec2(p) - glm::dvec2(middle)));
+            const double lump =
+                radiusMm > 0.0 ? blurredStep(radiusMm - glm::length(p - middle)) : 0.0;
+            return Shares{0.0, open * (1.0 - lump)};
+        });
+        const Grid& grid = scene.scan.hu.grid();
+        double lumpMl = 0.0;
+        for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+            if (glm::distance(grid.patientFromVoxelPoint(grid.voxelAt(n)), middle) > radiusMm)
+                continue;
+            scene.labels.writable()[n] = std::uint8_t(LumenLabel::tagged);
+            lumpMl += grid.voxelVolumeMm3() / 1000.0;
+        }
+        const auto mixture = cleansing::estimateMixture(scene.scan, scene.tissue, scene.labels,
+                                                        gravityDirection(scene.scan.position), {});
+        ASSERT_TRUE(mixture);
+        auto part = cleansing::cropToLumen(scene.scan, scene.labels, 1);
+        ASSERT_TRUE(part && *part);
+        const auto lost =
+            cleansing::cleanse(scene.scan, scene.tissue, *mixture,
+                               cleansing::measureTaggedLumen(std::move(**part), scene.tissue, 1))
+                .lost;
+        // A lump of half a millilitre is a polyp that residue covers.
+        ASSERT_EQ(lost.size(), radiusMm > 6.0 ? 1u : 0u);
+        if (lost.empty()) continue;
+        EXPECT_GT(lost[0].ml, 0.7 * lumpMl);  // of its rim the blur is lumen's
+        EXPECT_LT(lost[0].ml, lumpMl);
+        EXPECT_LT(glm::distance(lost[0].placeMm, middle), 0.5);
+    }
+}
+
 }  // namespace

@@ -13,8 +13,8 @@ using namespace haustra::test;
 namespace {
 
 /// Two tubes side by side, one half full.
-Scene twoTubes(int slices = 20) {
-    return makeScene({112, 56, slices}, 650.0, 14.0, [](glm::dvec3 p) {
+Scene twoTubes(int slices = 20, double taggedHu = 650.0) {
+    return makeScene({112, 56, slices}, taggedHu, 14.0, [](glm::dvec3 p) {
         const auto inside = [&](double x) {
             return blurredStep(12.0 - glm::length(glm::dvec2(p) - glm::dvec2(x, 20.6)));
         };
@@ -122,6 +122,27 @@ TEST(PseudoEnhancement, OtherTissueBesideAPartOfThePoolIsNoSign) {
     const auto found =
         cleansing::measurePseudoEnhancement(scene.scan, scene.tissue, scene.labels, 2);
     EXPECT_NEAR(found.edgeHu(), 50.0, 6.0);
+}
+
+// Water hardens no beam that the scanner has not reckoned with: what contents gain is a part of
+// what they are denser by. Else weak tagging is taken off until it is as dark as a wall.
+TEST(PseudoEnhancement, ContentsGainNoMoreThanAPartOfTheirOwnContrast) {
+    for (const double taggedHu : {150.0, 200.0, 300.0}) {
+        Scene scene = twoTubes(84, taggedHu);
+        enhance(scene, 90.0, 16.0);
+        const auto found =
+            cleansing::measurePseudoEnhancement(scene.scan, scene.tissue, scene.labels, 2);
+        const double gainedAtMost = 90.0 * (taggedHu - sceneAirHu) / 750.0,
+                     seenHu = taggedHu + gainedAtMost;
+        EXPECT_LE(found.gain * (seenHu - sceneAirHu), (seenHu - sceneSoftHu) / 3.0 + 1.0);
+        const CleansedScene result = cleanseScene(scene);
+        long both = 0, either = 0;
+        for (std::size_t n = 0; n < scene.labels.voxels().size(); ++n) {
+            const bool was = scene.labels[n] != 0, is = result.cleansed.lumen[n] != 0;
+            both += was && is, either += was + is;
+        }
+        EXPECT_GT(2.0 * double(both) / double(either), 0.97) << taggedHu;
+    }
 }
 
 }  // namespace

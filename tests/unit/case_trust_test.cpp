@@ -78,6 +78,19 @@ TEST_F(CaseTrust, HasWhatTheFlatMapWarnsOf) {
               (std::vector<std::string>{"9 % of the wall are dots", straightColon().warnings[0]}));
 }
 
+TEST_F(CaseTrust, HasWhatTheCleansedLumenWarnsOf) {
+    Case stored = made();
+    ASSERT_TRUE(stored.publishText("quality", key(), qualityJson(straightColon())));
+    ASSERT_TRUE(stored.publishVolume(
+        "cleansed-lumen", key(),
+        Volume<std::uint8_t>(axisAlignedGrid({4, 4, 4}, glm::dvec3(1.0)), std::uint8_t(0)),
+        {{"notes", "warning: 5 ml look like tissue"}}));
+    const auto trust = readTrust(stored);
+    ASSERT_TRUE(trust) << describe(trust.error());
+    EXPECT_EQ(trust->warnings,
+              (std::vector<std::string>{"5 ml look like tissue", straightColon().warnings[0]}));
+}
+
 TEST_F(CaseTrust, BeginsWithHowCoarseTheScanIs) {
     Case stored = made();
     ASSERT_TRUE(stored.publishText("quality", key(), qualityJson(straightColon())));

@@ -884,8 +884,12 @@
         <translation>Eine Wand von %1 mm² wurde gesetzt, jenseits derer Gas und Flüssigkeit für anderen Darm gehalten wurden; sie können zum Kolon gehören, bei %2</translation>
     </message>
     <message>
-        <source>%1 ml of fluid without tagging were taken out of the %2; its wall shows little contrast and may lie elsewhere by millimetres</source>
-        <translation>%2: %1 ml unmarkierte Flüssigkeit wurden herausgenommen; die Wand zeigt wenig Kontrast und kann um Millimeter anderswo liegen</translation>
+        <source>%1 ml of fluid of little or no tagging were taken out of the %2; its wall shows little contrast and may lie elsewhere by millimetres</source>
+        <translation>%2: %1 ml wenig oder gar nicht markierte Flüssigkeit wurden herausgenommen; die Wand zeigt wenig Kontrast und kann um Millimeter anderswo liegen</translation>
+    </message>
+    <message>
+        <source>%1 ml of what was taken for tagged residue look like tissue once cleansed, and are no part of the lumen, at %2</source>
+        <translation>%1 ml, die für markierten Rest gehalten wurden, sehen nach der Reinigung wie Gewebe aus und gehören nicht zum Lumen, bei %2</translation>
     </message>
     <message>
         <source>%1 ml of gas stand in the lumen of the %2 behind a wall of their own, as in a catheter&apos;s balloon; both were taken out, at %3</source>
