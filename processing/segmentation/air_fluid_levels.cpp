@@ -115,7 +115,7 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
                     GravityAxis down) {
     const double gas = tissue.meanHu[int(Tissue::air)], soft = tissue.meanHu[int(Tissue::soft)];
     const double voxelMm = hu.grid().spacingMm()[down.axis];
-    std::vector<double> heights, steps;
+    std::vector<double> heights, steps, tops;
     for (const LevelColumn& c : level.columns) {
         const double middle = crossing(hu, c, down, 0.5 * (gas + level.fluidHu));
         heights.push_back(voxelMm * (down.heightOf(c.above) + down.sign * middle));
@@ -123,12 +123,18 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
         LevelColumn from = c;
         from.above[down.axis] -= down.sign;
         if (!hu.grid().contains(from.above)) continue;
-        steps.push_back(voxelMm * (crossing(hu, from, down, 0.5 * (soft + level.fluidHu)) -
-                                   crossing(hu, from, down, soft - 0.25 * (soft - gas))));
+        const double top = crossing(hu, from, down, soft - 0.25 * (soft - gas));
+        steps.push_back(voxelMm * (crossing(hu, from, down, 0.5 * (soft + level.fluidHu)) - top));
+        tops.push_back(voxelMm * (down.heightOf(from.above) + down.sign * top));
     }
     std::vector<double> sorted = heights;
     level.heightMm = medianOrZero(sorted);
     level.stepMm = medianOrZero(steps);
+    std::vector<double> topsSorted = tops;
+    const double topMm = medianOrZero(topsSorted);
+    for (double& top : tops)
+        top = std::abs(top - topMm);
+    level.topRoughnessMm = medianOrZero(tops);
     const double mostOffMm = std::max(offHeightMm, 0.5 * voxelMm);
     const double contrast = level.fluidHu - soft;
     std::vector<LevelColumn> own;

@@ -41,6 +41,8 @@ struct Level {
     double roughnessMm = 0.0;  ///< median distance of those from heightMm
     /// Median way past soft tissue's HU: from a quarter of the way to gas to half of that to fluid.
     double stepMm = 0.0;
+    /// Median distance of where soft tissue's HU begin, beneath the gas, from their own median.
+    double topRoughnessMm = 0.0;
 };
 
 /// Flat levels for one direction of gravity (dissertation §3.2: below their air and above their

@@ -355,11 +355,15 @@ const char* lyingName(glm::dvec3 gravity) {
 
 // Gas over fluid has but their blur between, so that soft tissue's HU are passed within 0.95 σ to
 // 1.3 σ, or foam besides. Where two walls lie between, as of fluid in a loop beneath another's
-// floor, or lung beside bone, there is tissue of these HU.
+// floor, or lung beside bone, there is tissue of these HU. A wall is not flat, though: where they
+// begin in a plane they are the fluid's own, the heavier of which sank.
 void dropThoseBehindWalls(std::vector<Level>& levels, double edgeWidthMm) {
     constexpr double mostOfWidth = 1.25;  // which is 1.35 σ; foam makes it up to this
-    std::erase_if(levels,
-                  [&](const Level& level) { return level.stepMm > mostOfWidth * edgeWidthMm; });
+    constexpr double gradedMm2 = 100.0, flatMm = 0.2;
+    std::erase_if(levels, [&](const Level& level) {
+        const bool isGraded = level.areaMm2 >= gradedMm2 && level.topRoughnessMm <= flatMm;
+        return level.stepMm > mostOfWidth * edgeWidthMm && !isGraded;
+    });
 }
 // The area of those that have no more than blur between.
 double sureAreaMm2(const std::vector<Level>& levels, double edgeWidthMm) {

@@ -20,6 +20,8 @@ constexpr double gentleSlope = 0.6;                   // of a floor that goes on
 constexpr double edgeMm = 4.0;                        // of blur between gas and what is beneath
 constexpr double beneathMm = 1.5, deepestMm = 6.0;    // where the fluid's own HU shows
 constexpr double unlikeDown = 10.0, unlikeUp = 25.0;  // HU off soft tissue's
+constexpr double sharpMm = 2.6;  // from gas to tagged where nothing but blur lies between
+constexpr double gradedShare = 0.6;
 
 /// Where a column of gas ends.
 struct Floor {
@@ -28,6 +30,7 @@ struct Floor {
     double heightMm;  ///< of the middle between gas and soft tissue, along the axis
     double huBeneath;
     int samples;
+    bool rises;  ///< to the tagging's HU, farther beneath than blur reaches
 };
 
 class Floors {
@@ -40,7 +43,7 @@ public:
           stepMm_(hu.grid().spacingMm()[down.axis]),
           softHu_(tissue.meanHu[int(Tissue::soft)]),
           middleHu_(0.5 * (softHu_ + tissue.meanHu[int(Tissue::air)])),
-          taggedAboveHu_(tissue.taggedAboveHu) {}
+          tissue_(tissue) {}
 
     std::vector<Floor> ofSlice(int z) const {
         const Grid& grid = hu_.grid();
@@ -64,13 +67,15 @@ public:
 private:
     std::optional<Floor> below(glm::ivec3 gas) const {
         const Grid& grid = hu_.grid();
-        Floor floor{gas[1 - down_.axis], gas.z, gas[down_.axis], 0.0, 0.0, 0};
+        Floor floor{gas[1 - down_.axis], gas.z, gas[down_.axis], 0.0, 0.0, 0, false};
         glm::ivec3 v = gas;
         double last = hu_.at(v), crossedMm = -1.0;
+        glm::ivec3 crossed = gas;
         for (int step = 1; crossedMm < 0.0; ++step) {
             v[down_.axis] += down_.sign;
             if (!grid.contains(v) || step * stepMm_ > edgeMm + stepMm_) return {};
             const double here = hu_.at(v);
+            crossed = v;
             if (here > middleHu_)
                 crossedMm =
                     stepMm_ *
@@ -82,8 +87,15 @@ private:
         for (int step = int(std::ceil((crossedMm + beneathMm) / stepMm_));
              step * stepMm_ <= crossedMm + deepestMm; ++step) {
             v = gas, v[down_.axis] += step * down_.sign;
-            if (!grid.contains(v) || hu_.at(v) > taggedAboveHu_) break;
+            if (!grid.contains(v) || hu_.at(v) > tissue_.taggedAboveHu) break;
             sum += hu_.at(v), ++floor.samples;
+        }
+        const auto steps = stepsToTagged(hu_, tissue_, crossed, down_);
+        floor.rises = steps && *steps * stepMm_ > sharpMm;
+        // What rises fast has few voxels to measure, and is known by that it rises.
+        if (floor.samples == 0 && floor.rises) {
+            floor.huBeneath = tissue_.taggedAboveHu;
+            return floor;
         }
         if (floor.samples == 0) return {};
         floor.huBeneath = sum / floor.samples;
@@ -93,7 +105,8 @@ private:
     const Volume<std::int16_t>& hu_;
     const Volume<std::uint8_t>& labels_;
     const GravityAxis down_;
-    const double stepMm_, softHu_, middleHu_, taggedAboveHu_;
+    const double stepMm_, softHu_, middleHu_;
+    const TissueModel& tissue_;
 };
 
 /// The height that most floors of a patch share, and how many do.
@@ -271,7 +284,11 @@ std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Gr
     }
     const double softHu = tissue.meanHu[int(Tissue::soft)], fatHu = tissue.meanHu[int(Tissue::fat)];
     level.fluidHu = medianOf(beneath), level.heightMm = medianOf(heights);
-    if (level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp) return {};
+    const auto rising =
+        std::ranges::count_if(surface, [](const Floor& floor) { return floor.rises; });
+    level.graded = double(rising) >= gradedShare * double(surface.size());
+    if (!level.graded && level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp)
+        return {};
     if (level.fluidHu < 0.5 * (softHu + fatHu)) return {};
     level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;
     level.placeMm = grid.patientFromVoxelPoint(middle / double(surface.size()));
@@ -279,6 +296,40 @@ std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Gr
 }
 
 }  // namespace
+
+double meanAlongLevel(const Volume<std::int16_t>& hu, glm::ivec3 v, GravityAxis down) {
+    int sum = 0, count = 0;
+    for (int d = 0; d < 9; ++d) {
+        glm::ivec3 beside = v;
+        beside[1 - down.axis] += d % 3 - 1, beside.z += d / 3 - 1;
+        if (hu.grid().contains(beside)) sum += hu.at(beside), ++count;
+    }
+    return double(sum) / count;
+}
+
+std::optional<double> stepsToTagged(const Volume<std::int16_t>& hu, const TissueModel& tissue,
+                                    glm::ivec3 from, GravityAxis down) {
+    const double mostFallHu = 1.5 * tissue.sdHu[int(Tissue::soft)];
+    const Grid& grid = hu.grid();
+    const int most = int(longestGradientMm / grid.spacingMm()[down.axis]);
+    double highest = -1e9, last = highest, first = 0.0;
+    int tagged = 0;
+    for (int step = 0; step <= most; ++step, from[down.axis] += down.sign) {
+        if (!grid.contains(from)) return {};
+        const double here = meanAlongLevel(hu, from, down);
+        if (here < highest - mostFallHu) return {};
+        highest = std::max(highest, here);
+        if (here <= tissue.taggedAboveHu) {
+            tagged = 0;
+        } else if (++tagged == 1) {
+            first = step == 0 ? 0.0 : step - (here - tissue.taggedAboveHu) / (here - last);
+        } else {
+            return first;
+        }
+        last = here;
+    }
+    return {};
+}
 
 std::vector<UntaggedLevel> findUntaggedLevels(const Volume<std::int16_t>& hu,
                                               const TissueModel& tissue,

@@ -3,6 +3,7 @@
 #include "core/connected_labels.h"
 #include "core/crop.h"
 #include "core/flood_fill.h"
+#include "core/quantile.h"
 #include "segmentation/hu_range_lumen.h"
 #include "topology/distance_field.h"
 
@@ -40,6 +41,7 @@ public:
         : level_(level),
           isWeak_(level.fluidHu > tissue.meanHu[int(Tissue::soft)]),
           down_(contents.down),
+          tissue_(tissue),
           threads_(threads) {
         const Grid& whole = hu.grid();
         glm::ivec3 lo = level.columns.front(), hi = lo;
@@ -82,8 +84,25 @@ public:
                            double(filled) > leastFilled * double(level_.columns.size());
         if (!sound) return tl::make_unexpected(NoPool::leaked);
         trim(pool);
+        const Gradient gradient = gradientUnder(pool);
         keepOverBone(pool);
         keepAsideOfBone(pool);
+        add(gradient, pool);
+        return pool;
+    }
+
+    /// What a graded level's fluid is above the tagging, on the box's grid; empty where that is not
+    /// flat.
+    std::optional<Volume<std::uint8_t>> gradient() const {
+        Volume<std::uint8_t> pool(hu_.grid(), std::uint8_t(0));
+        const auto in = pool.writable();
+        for (const glm::ivec3 column : level_.columns) {
+            const std::size_t n = hu_.grid().index(below(column - box_.lo));
+            in[n] = isTissue(n);
+        }
+        const Gradient gradient = gradientUnder(pool);
+        if (2 * gradient.columns < level_.columns.size()) return std::nullopt;
+        add(gradient, pool);
         return pool;
     }
 
@@ -232,54 +251,167 @@ private:
         });
     }
 
+    /// Of each column, where it meets what is bright, as a place along the column.
+    class BrightFloors {
+    public:
+        static constexpr double none = -1.0;
+
+        BrightFloors(const Grid& grid, GravityAxis down)
+            : grid_(grid),
+              across_(1 - down.axis),
+              stepMm_(grid.spacingMm()[down.axis]),
+              at_(std::size_t(grid.size[across_]) * std::size_t(grid.size.z), none) {}
+
+        double& at(glm::ivec3 v) { return at_[index(v[across_], v.z)]; }
+
+        /// Whether most of the floors 4 to 16 mm off along both axes, of `least` and more, are as
+        /// high as the one here.
+        bool isFlat(glm::ivec3 v, double mostOffMm, int least) const {
+            return isLevel(v, across_, mostOffMm, least) && isLevel(v, 2, mostOffMm, least);
+        }
+
+    private:
+        std::size_t index(int n, int z) const {
+            return std::size_t(n) + std::size_t(grid_.size[across_]) * std::size_t(z);
+        }
+        bool isLevel(glm::ivec3 v, int axis, double mostOffMm, int least) const {
+            constexpr std::array<double, 4> asideMm{4.0, 8.0, 12.0, 16.0};
+            const double here = at_[index(v[across_], v.z)];
+            int met = 0, level = 0;
+            for (const double mm : asideMm) {
+                const int step = std::max(1, int(std::lround(mm / grid_.spacingMm()[axis])));
+                for (const int sign : {-1, 1}) {
+                    glm::ivec3 w = v;
+                    w[axis] += sign * step;
+                    if (!grid_.contains(w)) continue;
+                    const double floor = at_[index(w[across_], w.z)];
+                    if (floor == none) continue;
+                    ++met;
+                    level += std::abs(floor - here) * stepMm_ <= mostOffMm;
+                }
+            }
+            return met >= least && (met == 0 || 2 * level > met);
+        }
+
+        const Grid& grid_;
+        const int across_;
+        const double stepMm_;
+        std::vector<double> at_;  ///< in voxels from the column's upper end
+    };
+
+    /// Fluid that rises to the tagging beneath it: what is heavier sank.
+    struct Gradient {
+        std::vector<std::size_t> voxels;
+        std::size_t columns = 0;
+    };
+
+    /// What lies between a pool and the tagging to which its fluid rises, farther than blur
+    /// reaches. The tagging there is flat, and from a wall's HU to its own it takes longer than
+    /// blur; bone behind a wall is neither. A column that noise keeps from rising does as most of
+    /// those around it.
+    Gradient gradientUnder(const Volume<std::uint8_t>& pool) const {
+        constexpr double sharpMm = 3.5, flatMm = 1.5;
+        constexpr int leastMet = 2;
+        constexpr std::size_t leastAround = 4;
+        const Grid& grid = hu_.grid();
+        const int across = 1 - down_.axis;
+        BrightFloors ends(grid, down_), risen(grid, down_), floors(grid, down_);
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            int last = -1;
+            for (std::size_t at = 0; at < column.size(); ++at)
+                if (pool[column[at]]) last = int(at);
+            if (last < 0) return;
+            const glm::ivec3 v = grid.voxelAt(column[std::size_t(last)]);
+            ends.at(v) = last;
+            const auto steps = stepsToTagged(hu_, tissue_, v, down_);
+            if (!steps) return;
+            if (!level_.graded && riseMm(column, last) < sharpMm) return;
+            risen.at(v) = last + *steps;
+        });
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            const glm::ivec3 v = grid.voxelAt(column.front());
+            if (risen.at(v) != BrightFloors::none && risen.isFlat(v, flatMm, leastMet))
+                floors.at(v) = risen.at(v);
+        });
+        Gradient gradient;
+        eachColumn([&](const std::vector<std::size_t>& column) {
+            const glm::ivec3 v = grid.voxelAt(column.front());
+            const double last = ends.at(v);
+            if (last == BrightFloors::none) return;
+            double floor = floors.at(v);
+            if (floor == BrightFloors::none) {
+                std::vector<double> around;
+                for (int d = 0; d < 9; ++d) {
+                    glm::ivec3 w = v;
+                    w[across] += d % 3 - 1, w.z += d / 3 - 1;
+                    if (grid.contains(w) && floors.at(w) != BrightFloors::none)
+                        around.push_back(floors.at(w));
+                }
+                if (around.size() < leastAround) return;
+                floor = medianOf(around);
+            }
+            if ((floor - last) * stepMm() <= blurMm && !level_.graded) return;
+            ++gradient.columns;
+            // Beneath the floor some voxels are dark by noise alone.
+            const auto end = std::min(column.size(), std::size_t(floor + blurMm / stepMm()) + 1);
+            for (std::size_t at = std::size_t(last); at < end; ++at)
+                if (isTissue(column[at]) && (double(at) < floor || isBrightAround(column[at])))
+                    gradient.voxels.push_back(column[at]);
+        });
+        return gradient;
+    }
+
+    bool isBrightAround(std::size_t n) const {
+        return meanAlongLevel(hu_, hu_.grid().voxelAt(n), down_) > tissue_.taggedAboveHu;
+    }
+
+    /// How far a column takes from where it has passed a wall's HU to three quarters of the most
+    /// that it reaches within the longest gradient.
+    double riseMm(const std::vector<std::size_t>& column, int from) const {
+        constexpr double wallHu = 20.0, share = 0.75;
+        const double leastHu = tissue_.meanHu[int(Tissue::soft)] + wallHu;
+        const std::size_t end =
+            std::min(column.size(), std::size_t(from + int(longestGradientMm / stepMm()) + 1));
+        std::vector<double> means;
+        for (std::size_t at = std::size_t(from); at < end; ++at)
+            means.push_back(meanAlongLevel(hu_, hu_.grid().voxelAt(column[at]), down_));
+        const double most = *std::ranges::max_element(means);
+        const auto lastPast = [&](double hu, std::size_t before) {
+            for (std::size_t at = before; at > 0; --at)
+                if (means[at - 1] <= hu)
+                    return double(at) - (means[at] - hu) / (means[at] - means[at - 1]);
+            return 0.0;
+        };
+        const std::size_t peak = std::size_t(std::ranges::find(means, most) - means.begin());
+        return stepMm() * (lastPast(share * most, peak) - lastPast(leastHu, peak));
+    }
+
+    static void add(const Gradient& gradient, Volume<std::uint8_t>& pool) {
+        const auto in = pool.writable();
+        for (const std::size_t n : gradient.voxels)
+            in[n] = 1;
+    }
+
     /// Sediment lies level under its fluid, along both axes, as far as it reaches; what is bright
     /// under a pool and not level is bone, and the pool ends a wall's width over it.
     void keepOverBone(Volume<std::uint8_t>& pool) const {
-        constexpr double flatMm = 0.8;
-        constexpr std::array<double, 4> asideMm{4.0, 8.0, 12.0, 16.0};
-        constexpr int none = -1;
         const Grid& grid = hu_.grid();
-        const int across = 1 - down_.axis, width = grid.size[across];
+        const double flatMm = std::max(0.8, 0.6 * stepMm());
         const auto in = pool.writable();
-        // Of each column, where the pool meets what is bright, as a place along the column.
-        std::vector<int> floors(std::size_t(width) * std::size_t(grid.size.z), none);
-        const auto floorAt = [&](int n, int z) -> int& {
-            return floors[std::size_t(n) + std::size_t(width) * std::size_t(z)];
-        };
+        BrightFloors floors(grid, down_);
         eachColumn([&](const std::vector<std::size_t>& column) {
             for (std::size_t at = 1; at < column.size(); ++at) {
                 if (!in[column[at - 1]] || Content(content_[column[at]]) != Content::tagged)
                     continue;
-                const glm::ivec3 v = grid.voxelAt(column[at]);
-                floorAt(v[across], v.z) = int(at);
+                floors.at(grid.voxelAt(column[at])) = double(at);
             }
         });
-        // Whether most of the floors along one axis are as high as the floor here.
-        const auto isLevel = [&](int n, int z, int axis) {
-            int met = 0, level = 0;
-            for (const double mm : asideMm) {
-                const int step = voxelsOf(mm, axis);
-                for (const int sign : {-1, 1}) {
-                    const glm::ivec2 w =
-                        glm::ivec2(n, z) +
-                        (axis == 2 ? glm::ivec2(0, sign * step) : glm::ivec2(sign * step, 0));
-                    if (w.x < 0 || w.x >= width || w.y < 0 || w.y >= grid.size.z) continue;
-                    const int floor = floorAt(w.x, w.y);
-                    if (floor == none) continue;
-                    ++met;
-                    level += std::abs(floor - floorAt(n, z)) * stepMm() <=
-                             std::max(flatMm, 0.6 * stepMm());
-                }
-            }
-            return met == 0 || 2 * level > met;
-        };
-        const auto isFlat = [&](int n, int z) { return isLevel(n, z, across) && isLevel(n, z, 2); };
         const int gap = voxelsOf(overBoneMm, down_.axis);
         eachColumn([&](const std::vector<std::size_t>& column) {
             const glm::ivec3 first = grid.voxelAt(column.front());
-            const int floor = floorAt(first[across], first.z);
-            if (floor == none || isFlat(first[across], first.z)) return;
-            for (int at = std::max(0, floor - gap); at < floor; ++at)
+            const double floor = floors.at(first);
+            if (floor == BrightFloors::none || floors.isFlat(first, flatMm, 0)) return;
+            for (int at = std::max(0, int(floor) - gap); at < floor; ++at)
                 in[column[std::size_t(at)]] = 0;
         });
     }
@@ -342,6 +474,7 @@ private:
     const UntaggedLevel& level_;
     const bool isWeak_;  ///< took some tagging: brighter than soft tissue
     const GravityAxis down_;
+    const TissueModel& tissue_;
     const int threads_;
     VoxelBox box_;
     double planeMm_ = 0.0;  ///< the level's height on the box's grid
@@ -361,19 +494,28 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
                        int threads) {
     const Grid& grid = hu.grid();
     const auto content = contents.content.writable();
+    const auto put = [&](const PoolSearch& search, const Volume<std::uint8_t>& pool) {
+        for (std::size_t n = 0; n < pool.grid().voxelCount(); ++n) {
+            if (pool[n] == 0) continue;
+            const std::size_t m = grid.index(pool.grid().voxelAt(n) + search.box().lo);
+            content[m] = std::uint8_t(Content::untagged);
+        }
+    };
     const auto poolOf = [&](const PoolSearch& search, double ballMm) -> tl::expected<void, NoPool> {
         const auto pool = search.open(ballMm);
         if (!pool) return tl::make_unexpected(pool.error());
-        for (std::size_t n = 0; n < pool->grid().voxelCount(); ++n) {
-            if ((*pool)[n] == 0) continue;
-            const std::size_t m = grid.index(pool->grid().voxelAt(n) + search.box().lo);
-            content[m] = std::uint8_t(Content::untagged);
-        }
+        put(search, *pool);
         return {};
     };
     // The smallest balls that do not leak show most of a pool.
     const auto mark = [&](const UntaggedLevel& level) {
         const PoolSearch near(hu, tissue, contents, level, reaches[0], threads);
+        if (level.graded) {
+            if (const auto pool = near.gradient()) {
+                put(near, *pool);
+                return true;
+            }
+        }
         std::optional<PoolSearch> far;
         for (const double ballMm : ballsMm) {
             const auto marked = poolOf(near, ballMm);

@@ -598,6 +598,36 @@ TEST(FindColon, FluidOfLittleOrNoTaggingIsLumenUnderItsLevel) {
     }
 }
 
+// What is heavier sinks: the top of a pool has little or no tagging, whatever HU that gives it, and
+// what lies deeper more and more.
+TEST(FindColon, FluidThatRisesToItsSedimentIsLumen) {
+    struct Profile {
+        double topHu, middleMm, widthMm;  ///< of a logistic rise with the depth
+    };
+    const auto pool = [](glm::dvec3 p) { return inColon(p) && p.y >= 128.0 && p.x < 120; };
+    for (const Profile profile : {Profile{15.0, 14.0, 1.8}, Profile{45.0, 8.0, 1.5},
+                                  Profile{100.0, 6.0, 1.5}, Profile{15.0, 8.0, 1.5}}) {
+        SCOPED_TRACE(testing::Message() << profile.topHu << " to " << profile.middleMm);
+        Drawing drawing;
+        drawing.paintColon([&](glm::dvec3 p) { return p.y >= levelMm && p.x >= 120; });
+        drawing.eachVoxel([&](std::size_t n, glm::dvec3 p) {
+            if (!pool(p)) return;
+            const double deep = (p.y - 128.0 - profile.middleMm) / profile.widthMm;
+            drawing.hu.writable()[n] = std::int16_t(
+                profile.topHu + (520.0 - profile.topHu) / (1.0 + std::exp(-deep)) + int(n % 7) - 3);
+        });
+        const auto found = find(drawing.scan());
+        ASSERT_TRUE(found) << describe(found.error());
+        EXPECT_GT(diceWithDrawing(*found), 0.97);
+        EXPECT_TRUE(isOnePiece(*found));
+        double poolMl = 0.0;
+        drawing.eachVoxel([&](std::size_t, glm::dvec3 p) {
+            poolMl += pool(p) ? drawing.hu.grid().voxelVolumeMm3() / 1000.0 : 0.0;
+        });
+        EXPECT_GT(labelledMl(*found, pool), 0.82 * poolMl);  // a millimetre is the wall's
+    }
+}
+
 // From the ascending colon's middle down the roof lies below the fluid's surface, as far as the
 // cecum: full, and as much of the pool as what stands under the gas.
 TEST(FindColon, ASectionFullOfFluidToItsRoofBelongsToThePool) {
