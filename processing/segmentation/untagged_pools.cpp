@@ -124,8 +124,12 @@ private:
     bool mayBeFluid(std::size_t n) const {
         return isTissue(n) || (isWeak_ && Content(content_[n]) == Content::tagged);
     }
+    /// Sediment, or bone; not what is so bright in weakly tagged fluid by noise.
+    bool isTagged(std::size_t n) const {
+        return Content(content_[n]) == Content::tagged && !(isWeak_ && fluid_[n]);
+    }
     bool isTagged(glm::ivec3 v) const {
-        return hu_.grid().contains(v) && Content(content_.at(v)) == Content::tagged;
+        return hu_.grid().contains(v) && isTagged(hu_.grid().index(v));
     }
     int voxelsOf(double mm, int axis) const {
         return std::max(1, int(std::lround(mm / hu_.grid().spacingMm()[axis])));
@@ -219,8 +223,8 @@ private:
             enum class Over { other, gas, fluid } over = Over::other;
             std::vector<std::size_t> between;
             for (const std::size_t m : column) {
-                const bool mayBlur = double(between.size()) * stepMm() < blurMm && isTissue(m);
-                const bool ends = isGas(m) || in[m] || Content(content_[m]) == Content::tagged;
+                const bool mayBlur = double(between.size()) * stepMm() < blurMm && mayBeFluid(m);
+                const bool ends = isGas(m) || in[m] || isTagged(m);
                 if (ends) {
                     const bool fills = over == Over::gas     ? in[m] != 0
                                        : over == Over::fluid ? !isGas(m)
@@ -401,8 +405,7 @@ private:
         BrightFloors floors(grid, down_);
         eachColumn([&](const std::vector<std::size_t>& column) {
             for (std::size_t at = 1; at < column.size(); ++at) {
-                if (!in[column[at - 1]] || Content(content_[column[at]]) != Content::tagged)
-                    continue;
+                if (!in[column[at - 1]] || !isTagged(column[at])) continue;
                 floors.at(grid.voxelAt(column[at])) = double(at);
             }
         });
