@@ -34,10 +34,12 @@ struct PseudoEnhancement {
 /// the fitted scale is corrected for that. It is at most the wall's own scale, from where the blur
 /// ends to 1.5 mm farther, and two standard errors of that (by leaving out one slab of 20 mm after
 /// the other): what is taken off the wall too much makes fat of it. Where too little wall is seen,
-/// or in one slab alone, the gas' scale stands. None where the flat edge of a pool would gain less
-/// than 4 HU. `scan` and `segmentation` may be the part of a larger scan, on grid `whole`, that
-/// begins at its voxel `from` and holds what is within 20 mm of the labels; cells and samples are
-/// counted from there. O(voxels); the same for any number of threads.
+/// or in one slab alone, the gas' scale stands. Nor do contents gain more than a third of their
+/// mean HU over soft tissue: scanners reckon with water, and what is as dense adds nothing. None
+/// where the flat edge of a pool would gain less than 4 HU. `scan` and `segmentation` may be the
+/// part of a larger scan, on grid `whole`, that begins at its voxel `from` and holds what is within
+/// 20 mm of the labels; cells and samples are counted from there. O(voxels); the same for any
+/// number of threads.
 PseudoEnhancement measurePseudoEnhancement(const CtScan& scan, const TissueModel& tissue,
                                            const Volume<std::uint8_t>& segmentation,
                                            const Grid& whole, glm::ivec3 from, int threads);

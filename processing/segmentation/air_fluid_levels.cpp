@@ -115,7 +115,7 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
                     GravityAxis down) {
     const double gas = tissue.meanHu[int(Tissue::air)], soft = tissue.meanHu[int(Tissue::soft)];
     const double voxelMm = hu.grid().spacingMm()[down.axis];
-    std::vector<double> heights, steps, tops;
+    std::vector<double> heights, steps, tops, rises;
     for (const LevelColumn& c : level.columns) {
         const double middle = crossing(hu, c, down, 0.5 * (gas + level.fluidHu));
         heights.push_back(voxelMm * (down.heightOf(c.above) + down.sign * middle));
@@ -126,6 +126,7 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
         const double top = crossing(hu, from, down, soft - 0.25 * (soft - gas));
         steps.push_back(voxelMm * (crossing(hu, from, down, 0.5 * (soft + level.fluidHu)) - top));
         tops.push_back(voxelMm * (down.heightOf(from.above) + down.sign * top));
+        rises.push_back(riseMm(hu, tissue, c.above, down));
     }
     std::vector<double> sorted = heights;
     level.heightMm = medianOrZero(sorted);
@@ -135,6 +136,7 @@ void measureSurface(Level& level, const Volume<std::int16_t>& hu, const TissueMo
     for (double& top : tops)
         top = std::abs(top - topMm);
     level.topRoughnessMm = medianOrZero(tops);
+    level.riseMm = medianOrZero(rises);
     const double mostOffMm = std::max(offHeightMm, 0.5 * voxelMm);
     const double contrast = level.fluidHu - soft;
     std::vector<LevelColumn> own;
@@ -220,6 +222,37 @@ struct MiddleHalf {
 };
 
 }  // namespace
+
+double meanAlongLevel(const Volume<std::int16_t>& hu, glm::ivec3 v, GravityAxis down) {
+    int sum = 0, count = 0;
+    for (int d = 0; d < 9; ++d) {
+        glm::ivec3 beside = v;
+        beside[1 - down.axis] += d % 3 - 1, beside.z += d / 3 - 1;
+        if (hu.grid().contains(beside)) sum += hu.at(beside), ++count;
+    }
+    return double(sum) / count;
+}
+
+double riseMm(const Volume<std::int16_t>& hu, const TissueModel& tissue, glm::ivec3 from,
+              GravityAxis down) {
+    constexpr double wallHu = 20.0, share = 0.75;
+    const double leastHu = tissue.meanHu[int(Tissue::soft)] + wallHu,
+                 voxelMm = hu.grid().spacingMm()[down.axis];
+    std::vector<double> means;
+    for (double mm = 0.0; mm <= longestGradientMm && hu.grid().contains(from); mm += voxelMm) {
+        means.push_back(meanAlongLevel(hu, from, down));
+        from[down.axis] += down.sign;
+    }
+    if (means.empty()) return 0.0;
+    const std::size_t peak = std::size_t(std::ranges::max_element(means) - means.begin());
+    const auto lastPast = [&](double value) {
+        for (std::size_t at = peak; at > 0; --at)
+            if (means[at - 1] <= value)
+                return double(at) - (means[at] - value) / (means[at] - means[at - 1]);
+        return 0.0;
+    };
+    return voxelMm * std::max(0.0, lastPast(share * means[peak]) - lastPast(leastHu));
+}
 
 std::vector<Level> findLevels(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                               const Volume<std::uint8_t>& content, GravityAxis down, int threads) {

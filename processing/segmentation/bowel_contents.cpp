@@ -17,7 +17,7 @@ namespace {
 constexpr double cellMm = 4.0;
 constexpr double outsideReachMm = 6.0;
 constexpr double lungAboveGasHu = 60.0, lungBelowHu = -550.0;
-constexpr double smallestLungMl = 50.0, lungFromTopMm = 40.0;
+constexpr double smallestLungMl = 50.0, lungFromTopMm = 40.0, wholeLungMl = 500.0;
 
 /// The scan in cubes of about 4 mm, by what of them lies in the field of view.
 struct Cells {
@@ -233,8 +233,8 @@ private:
 };
 
 // Cells of a mean HU well above gas, in bodies thicker than the partial volume at a wall, which
-// come from the scan's top, as of an abdomen the lungs do. Others are bowel's: scatter in a large
-// body, or foam, makes its gas as bright.
+// come from the scan's top, as of an abdomen the lungs do, or are as large as a whole one. Others
+// are bowel's: scatter in a large body, or foam, makes its gas as bright.
 std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::uint8_t>& outside,
                                     double gasHu, const BeneathTop& beneathTopMm) {
     const auto lungLike = [&](std::size_t n) {
@@ -258,10 +258,11 @@ std::vector<std::uint8_t> lungCells(const Cells& cells, const std::vector<std::u
             seen[m] = 1;
             return true;
         });
-        const bool isLung = double(body.size()) * cells.cellMl >= smallestLungMl &&
-                            std::ranges::any_of(body, [&](std::size_t m) {
-                                return beneathTopMm(m) <= lungFromTopMm;
-                            });
+        const double ml = double(body.size()) * cells.cellMl;
+        const bool isLung = ml >= wholeLungMl ||
+                            (ml >= smallestLungMl && std::ranges::any_of(body, [&](std::size_t m) {
+                                 return beneathTopMm(m) <= lungFromTopMm;
+                             }));
         if (!isLung) continue;
         for (const std::size_t m : body)
             lung[m] = 1;
@@ -356,12 +357,13 @@ const char* lyingName(glm::dvec3 gravity) {
 // Gas over fluid has but their blur between, so that soft tissue's HU are passed within 0.95 σ to
 // 1.3 σ, or foam besides. Where two walls lie between, as of fluid in a loop beneath another's
 // floor, or lung beside bone, there is tissue of these HU. A wall is not flat, though: where they
-// begin in a plane they are the fluid's own, the heavier of which sank.
+// begin in a plane, and rise slowly, they are the fluid's own, the heavier of which sank.
 void dropThoseBehindWalls(std::vector<Level>& levels, double edgeWidthMm) {
     constexpr double mostOfWidth = 1.25;  // which is 1.35 σ; foam makes it up to this
     constexpr double gradedMm2 = 100.0, flatMm = 0.2;
     std::erase_if(levels, [&](const Level& level) {
-        const bool isGraded = level.areaMm2 >= gradedMm2 && level.topRoughnessMm <= flatMm;
+        const bool isGraded = level.areaMm2 >= gradedMm2 && level.topRoughnessMm <= flatMm &&
+                              level.riseMm >= std::max(slowRiseMm, 2.0 * edgeWidthMm);
         return level.stepMm > mostOfWidth * edgeWidthMm && !isGraded;
     });
 }

@@ -55,9 +55,9 @@ struct BowelContents {
 /// lies in a corner of the slices, or from the first to the last; of a round field's border, which
 /// has no corners, what reaches the first slice or the last. Other air there is gas that a narrow
 /// field cuts. Lung is air of a mean HU more than 60 above gas in cubes of 4 mm, where such cubes
-/// lie three deep, in bodies of 50 ml and more that come within 40 mm of the scan's cranial end.
-/// Levels as of findLevels, for the direction of gravity that shows most of them; a warning says
-/// where that is not the told one.
+/// lie three deep, in bodies of 50 ml and more that come within 40 mm of the scan's cranial end, or
+/// of 500 ml. Levels as of findLevels, for the direction of gravity that shows most of them; a
+/// warning says where that is not the told one.
 BowelContents findContents(const Volume<std::int16_t>& hu, const FieldOfView& field,
                            PatientPosition position, const TissueModel& tissue, int threads);
 

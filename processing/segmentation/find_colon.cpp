@@ -360,9 +360,12 @@ double lengthMm(const Course& course) {
     return sum;
 }
 
-void forgetPools(BowelContents& contents) {
-    for (std::uint8_t& content : contents.content.writable()) {
-        if (Content(content) == Content::untagged) content = std::uint8_t(Content::tissue);
+void forgetPools(Surroundings& among, const TissueModel& tissue) {
+    const auto content = among.contents.content.writable();
+    for (std::size_t n = 0; n < content.size(); ++n) {
+        if (Content(content[n]) != Content::untagged) continue;
+        const bool isTagged = among.hu[n] > tissue.taggedAboveHu;
+        content[n] = std::uint8_t(isTagged ? Content::tagged : Content::tissue);
     }
 }
 
@@ -394,7 +397,7 @@ Result<FoundColon> findAmong(Surroundings& among, const TissueModel& tissue,
             cutBalls(among.contents, options.edits.cuts);
             auto next = findCourse(among, thin, tissue, options);
             if (!next || lengthMm(*next) < leastOfBefore * lengthMm(course)) {
-                forgetPools(among.contents);
+                forgetPools(among, tissue);
                 break;
             }
             course = std::move(*next);

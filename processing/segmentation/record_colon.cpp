@@ -510,8 +510,7 @@ private:
             if (ml > tellMl)
                 say(
                     printed("%.0f ml of fluid of little or no tagging were taken out of the %s; "
-                            "its wall shows "
-                            "little contrast and may lie elsewhere by millimetres",
+                            "its wall shows little contrast and may lie elsewhere by millimetres",
                             ml, toString(part)));
         }
         for (const EnclosedGas& gas : labels_.enclosed)

@@ -91,7 +91,8 @@ private:
             sum += hu_.at(v), ++floor.samples;
         }
         const auto steps = stepsToTagged(hu_, tissue_, crossed, down_);
-        floor.rises = steps && *steps * stepMm_ > sharpMm;
+        floor.rises = steps && *steps * stepMm_ > sharpMm &&
+                      riseMm(hu_, tissue_, crossed, down_) >= slowRiseMm;
         // What rises fast has few voxels to measure, and is known by that it rises.
         if (floor.samples == 0 && floor.rises) {
             floor.huBeneath = tissue_.taggedAboveHu;
@@ -287,8 +288,8 @@ std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Gr
     const auto rising =
         std::ranges::count_if(surface, [](const Floor& floor) { return floor.rises; });
     level.graded = double(rising) >= gradedShare * double(surface.size());
-    if (!level.graded && level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp)
-        return {};
+    level.likeWall = level.fluidHu > softHu - unlikeDown && level.fluidHu < softHu + unlikeUp;
+    if (level.likeWall && !level.graded) return {};
     if (level.fluidHu < 0.5 * (softHu + fatHu)) return {};
     level.areaMm2 = double(surface.size()) * stepMm.x * stepMm.y;
     level.placeMm = grid.patientFromVoxelPoint(middle / double(surface.size()));
@@ -296,16 +297,6 @@ std::optional<UntaggedLevel> levelOf(const std::vector<Floor>& surface, const Gr
 }
 
 }  // namespace
-
-double meanAlongLevel(const Volume<std::int16_t>& hu, glm::ivec3 v, GravityAxis down) {
-    int sum = 0, count = 0;
-    for (int d = 0; d < 9; ++d) {
-        glm::ivec3 beside = v;
-        beside[1 - down.axis] += d % 3 - 1, beside.z += d / 3 - 1;
-        if (hu.grid().contains(beside)) sum += hu.at(beside), ++count;
-    }
-    return double(sum) / count;
-}
 
 std::optional<double> stepsToTagged(const Volume<std::int16_t>& hu, const TissueModel& tissue,
                                     glm::ivec3 from, GravityAxis down) {

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double smoothMm = 1.5, centerSmoothMm = 3.0;
 constexpr double centerShare = 0.8;    // of the way to another tissue, at a ball's centre
+constexpr double mostOverHu = 60.0;    // of weakly tagged fluid, its level's
 constexpr double aboveMm = 20.0;       // the level, where leaks are looked for
 constexpr double blurMm = 3.0;         // of partial volume at a level
 constexpr double blurredWallMm = 1.0;  // taken for fluid beside fat
@@ -146,7 +147,7 @@ private:
                      fatHu = tissue.meanHu[int(Tissue::fat)];
         // Fluid lies between fat and soft tissue in HU; with some tagging, over soft tissue.
         const double fromHu = 0.5 * (level_.fluidHu + (isWeak_ ? softHu : fatHu)),
-                     toHu = isWeak_ ? level_.fluidHu + (level_.fluidHu - softHu)
+                     toHu = isWeak_ ? level_.fluidHu + std::min(mostOverHu, level_.fluidHu - softHu)
                                     : 0.5 * (level_.fluidHu + softHu);
         fluid_ = looksLike(smoothMm, fromHu, toHu, fatHu);
         centers_ = looksLike(centerSmoothMm, glm::mix(level_.fluidHu, fromHu, centerShare),
@@ -314,8 +315,8 @@ private:
     /// blur; bone behind a wall is neither. A column that noise keeps from rising does as most of
     /// those around it.
     Gradient gradientUnder(const Volume<std::uint8_t>& pool) const {
-        constexpr double sharpMm = 3.5, flatMm = 1.5;
-        constexpr int leastMet = 2;
+        constexpr double flatMm = 1.5;
+        constexpr int leastMet = 3;
         constexpr std::size_t leastAround = 4;
         const Grid& grid = hu_.grid();
         const int across = 1 - down_.axis;
@@ -329,7 +330,7 @@ private:
             ends.at(v) = last;
             const auto steps = stepsToTagged(hu_, tissue_, v, down_);
             if (!steps) return;
-            if (!level_.graded && riseMm(column, last) < sharpMm) return;
+            if (riseMm(hu_, tissue_, v, down_) < slowRiseMm) return;
             risen.at(v) = last + *steps;
         });
         eachColumn([&](const std::vector<std::size_t>& column) {
@@ -367,27 +368,6 @@ private:
 
     bool isBrightAround(std::size_t n) const {
         return meanAlongLevel(hu_, hu_.grid().voxelAt(n), down_) > tissue_.taggedAboveHu;
-    }
-
-    /// How far a column takes from where it has passed a wall's HU to three quarters of the most
-    /// that it reaches within the longest gradient.
-    double riseMm(const std::vector<std::size_t>& column, int from) const {
-        constexpr double wallHu = 20.0, share = 0.75;
-        const double leastHu = tissue_.meanHu[int(Tissue::soft)] + wallHu;
-        const std::size_t end =
-            std::min(column.size(), std::size_t(from + int(longestGradientMm / stepMm()) + 1));
-        std::vector<double> means;
-        for (std::size_t at = std::size_t(from); at < end; ++at)
-            means.push_back(meanAlongLevel(hu_, hu_.grid().voxelAt(column[at]), down_));
-        const double most = *std::ranges::max_element(means);
-        const auto lastPast = [&](double hu, std::size_t before) {
-            for (std::size_t at = before; at > 0; --at)
-                if (means[at - 1] <= hu)
-                    return double(at) - (means[at] - hu) / (means[at] - means[at - 1]);
-            return 0.0;
-        };
-        const std::size_t peak = std::size_t(std::ranges::find(means, most) - means.begin());
-        return stepMm() * (lastPast(share * most, peak) - lastPast(leastHu, peak));
     }
 
     static void add(const Gradient& gradient, Volume<std::uint8_t>& pool) {
@@ -513,21 +493,21 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
     // The smallest balls that do not leak show most of a pool.
     const auto mark = [&](const UntaggedLevel& level) {
         const PoolSearch near(hu, tissue, contents, level, reaches[0], threads);
-        if (level.graded) {
-            if (const auto pool = near.gradient()) {
-                put(near, *pool);
-                return true;
-            }
-        }
+        // By HU alone its top is the wall's, or tagged.
+        const bool isTold = level.likeWall || level.fluidHu >= tissue.taggedAboveHu;
         std::optional<PoolSearch> far;
         for (const double ballMm : ballsMm) {
+            if (isTold) break;
             const auto marked = poolOf(near, ballMm);
             if (marked) return true;
             if (marked.error() != NoPool::cutOff) continue;
             if (!far) far.emplace(hu, tissue, contents, level, reaches[1], threads);
             if (poolOf(*far, ballMm)) return true;
         }
-        return false;
+        if (!level.graded) return false;
+        const auto pool = near.gradient();
+        if (pool) put(near, *pool);
+        return pool.has_value();
     };
     bool any = false;
     for (const UntaggedLevel& level : levels)

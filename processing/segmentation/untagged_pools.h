@@ -10,8 +10,10 @@
 namespace haustra::segmentation {
 
 /// Marks as Content::untagged what stands beneath these levels (findUntaggedLevels): tissue below
-/// the level whose HU, smoothed to 1.5 mm, are nearer to the fluid's
-/// than to soft tissue's or to fat's, opened by a ball and connected with the level. The outermost
+/// the level whose HU, smoothed to 1.5 mm, are nearer to the fluid's than to soft tissue's or to
+/// fat's, opened by a ball and connected with the level. Fluid that took a little tagging is
+/// brighter than soft tissue: then they are nearer to its HU than to soft tissue's, and at most 60
+/// over it. What rises slowly from there to flat tagging is the fluid's, too. The outermost
 /// millimetre that balls reach is the wall's: a distended colon's wall is 1 to 2 mm thick (Wiesner
 /// et al., J Comput Assist Tomogr 2002; 26: 102), too thin to show its own HU between fluid and
 /// fat.

@@ -889,7 +889,7 @@
     </message>
     <message>
         <source>%1 ml of what was taken for tagged residue look like tissue once cleansed, and are no part of the lumen, at %2</source>
-        <translation>%1 ml, die für markierten Rest gehalten wurden, sehen nach der Reinigung wie Gewebe aus und gehören nicht zum Lumen, bei %2</translation>
+        <translation>%1 ml, die für markierte Reste gehalten wurden, sehen nach der Reinigung wie Gewebe aus und gehören nicht zum Lumen, bei %2</translation>
     </message>
     <message>
         <source>%1 ml of gas stand in the lumen of the %2 behind a wall of their own, as in a catheter&apos;s balloon; both were taken out, at %3</source>
