@@ -312,11 +312,12 @@ private:
 
     /// What lies between a pool and the tagging to which its fluid rises, farther than blur
     /// reaches. The tagging there is flat, and from a wall's HU to its own it takes longer than
-    /// blur; bone behind a wall is neither. A column that noise keeps from rising does as most of
+    /// blur; bone behind a wall is neither. A column that noise keeps from rising does as half of
     /// those around it.
     Gradient gradientUnder(const Volume<std::uint8_t>& pool) const {
         constexpr double flatMm = 1.5;
         constexpr int leastMet = 3;
+        constexpr int mostRounds = 8;
         constexpr std::size_t leastAround = 4;
         const Grid& grid = hu_.grid();
         const int across = 1 - down_.axis;
@@ -338,29 +339,43 @@ private:
             if (risen.at(v) != BrightFloors::none && risen.isFlat(v, flatMm, leastMet))
                 floors.at(v) = risen.at(v);
         });
+        const auto around = [&](glm::ivec3 v) {
+            std::vector<double> all;
+            for (int d = 0; d < 9; ++d) {
+                glm::ivec3 w = v;
+                w[across] += d % 3 - 1, w.z += d / 3 - 1;
+                if (grid.contains(w) && floors.at(w) != BrightFloors::none)
+                    all.push_back(floors.at(w));
+            }
+            return all;
+        };
+        for (int round = 0; round < mostRounds; ++round) {
+            std::vector<std::pair<glm::ivec3, double>> more;
+            eachColumn([&](const std::vector<std::size_t>& column) {
+                const glm::ivec3 v = grid.voxelAt(column.front());
+                if (ends.at(v) == BrightFloors::none || floors.at(v) != BrightFloors::none) return;
+                auto beside = around(v);
+                if (beside.size() >= leastAround) more.emplace_back(v, medianOf(beside));
+            });
+            if (more.empty()) break;
+            for (const auto& [v, floor] : more)
+                floors.at(v) = floor;
+        }
         Gradient gradient;
+        const int gap = voxelsOf(overBoneMm, down_.axis);
         eachColumn([&](const std::vector<std::size_t>& column) {
             const glm::ivec3 v = grid.voxelAt(column.front());
-            const double last = ends.at(v);
-            if (last == BrightFloors::none) return;
-            double floor = floors.at(v);
-            if (floor == BrightFloors::none) {
-                std::vector<double> around;
-                for (int d = 0; d < 9; ++d) {
-                    glm::ivec3 w = v;
-                    w[across] += d % 3 - 1, w.z += d / 3 - 1;
-                    if (grid.contains(w) && floors.at(w) != BrightFloors::none)
-                        around.push_back(floors.at(w));
-                }
-                if (around.size() < leastAround) return;
-                floor = medianOf(around);
-            }
-            if ((floor - last) * stepMm() <= blurMm && !level_.graded) return;
+            const double floor = floors.at(v);
+            if (floor == BrightFloors::none) return;
             ++gradient.columns;
-            // Beneath the floor some voxels are dark by noise alone.
+            // Of the pool's own what keepOverBone takes; beneath the floor some voxels are dark by
+            // noise alone.
+            const int first = std::max(0, std::min(int(ends.at(v)), int(floor) - gap));
             const auto end = std::min(column.size(), std::size_t(floor + blurMm / stepMm()) + 1);
-            for (std::size_t at = std::size_t(last); at < end; ++at)
-                if (isTissue(column[at]) && (double(at) < floor || isBrightAround(column[at])))
+            for (std::size_t at = std::size_t(first); at < end; ++at)
+                if (double(at) < ends.at(v) ? pool[column[at]] != 0
+                                            : isTissue(column[at]) && (double(at) < floor ||
+                                                                       isBrightAround(column[at])))
                     gradient.voxels.push_back(column[at]);
         });
         return gradient;
