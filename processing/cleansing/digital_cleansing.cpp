@@ -157,6 +157,7 @@ std::vector<std::vector<std::uint8_t>> residueShares(const TaggedSurroundings& a
     return shares;
 }
 
+/// CleansedLumen::lost.
 std::vector<LostLumen> lostLumen(const Volume<std::uint8_t>& segmented,
                                  const Volume<std::uint8_t>& open) {
     constexpr double deepMm = 2.5, leastMl = 2.0;

@@ -508,11 +508,11 @@ bool markUntaggedPools(const Volume<std::int16_t>& hu, const TissueModel& tissue
     // The smallest balls that do not leak show most of a pool.
     const auto mark = [&](const UntaggedLevel& level) {
         const PoolSearch near(hu, tissue, contents, level, reaches[0], threads);
-        // By HU alone its top is the wall's, or tagged.
-        const bool isTold = level.likeWall || level.fluidHu >= tissue.taggedAboveHu;
+        // Else its top is the wall's by its HU, or tagged: balls have nothing to go by.
+        const bool showsByHu = !level.likeWall && level.fluidHu < tissue.taggedAboveHu;
         std::optional<PoolSearch> far;
         for (const double ballMm : ballsMm) {
-            if (isTold) break;
+            if (!showsByHu) break;
             const auto marked = poolOf(near, ballMm);
             if (marked) return true;
             if (marked.error() != NoPool::cutOff) continue;
