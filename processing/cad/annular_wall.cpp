@@ -130,7 +130,7 @@ std::vector<VoxelRun> tissueOf(const AnnularWall& wall, const PreparedColon& col
 }  // namespace
 
 std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample) {
-    constexpr double stepMm = 0.5, surfaceMm = 3.0;  // by then the edge's blur has passed
+    constexpr double stepMm = 0.5, edgeMm = 3.0;  // by then an edge's blur has passed
     const SmoothScan& scan = *evidence.smooth;
     const glm::dmat4& voxelFromPatient = scan.voxelFromPatient();
     const glm::vec3 start(voxelFromPatient *
@@ -138,14 +138,18 @@ std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_
     const glm::vec3 perMm(glm::dmat3(voxelFromPatient) *
                           glm::dvec3(evidence.shapes[sample].intoWall));
     const double tissueHu = leastTissueHu(evidence);
+    const double gasHu = 0.5 * (evidence.statistics.fatHu + emptyHu);
     bool inTissue = false;
     double before = 0.0;
     for (double mm = stepMm; mm <= deepestWallMm; mm += stepMm) {
         const double hu = scan.linear(start + float(mm) * perMm);
-        if (inTissue && hu < tissueHu)
+        if (inTissue && hu < tissueHu) {
+            for (double beyond = mm; beyond <= mm + edgeMm; beyond += stepMm)
+                if (scan.linear(start + float(beyond) * perMm) < gasHu) return std::nullopt;
             return mm - stepMm * (tissueHu - hu) / std::max(before - hu, 1e-6);
+        }
         inTissue |= hu >= tissueHu;
-        if (!inTissue && mm >= surfaceMm) return 0.0;
+        if (!inTissue && mm >= edgeMm) return 0.0;
         before = hu;
     }
     return std::nullopt;

@@ -18,24 +18,25 @@ inline constexpr double annularScore = 0.9;
 
 /// A stretch of the colon whose wall is thick all around.
 struct AnnularWall {
-    double fromMm = 0.0, toMm = 0.0;     ///< arcs along the centerline
-    double thicknessMm = 0.0;            ///< of its wall, median
-    double middleHu = 0.0;               ///< median of the smoothed scan half-way through it
-    double channelMm = 0.0;              ///< twice the path's least distance from it
-    std::vector<std::uint32_t> samples;  ///< its wall, ascending
+    double fromMm = 0.0, toMm = 0.0;          ///< arcs along the centerline
+    double thicknessMm = 0.0;                 ///< of its wall, median
+    double middleHu = 0.0;                    ///< median of the smoothed scan half-way through it
+    double channelMm = 0.0;                   ///< twice the path's least distance from it
+    std::vector<std::uint32_t> samples = {};  ///< its wall, ascending
     double lengthMm() const { return toMm - fromMm; }
 };
 
 /// How deep tissue reaches behind a sample, mm, along the ray into the wall: to where the smoothed
-/// scan is nearer to fat or gas than to tissue. 0 of a wall that is too thin for the scan to show;
-/// none where tissue goes on for `deepestWallMm`, so that something else lies against the colon.
+/// scan is nearer to fat than to tissue. 0 of a wall that is too thin for the scan to show; none
+/// where tissue goes on for `deepestWallMm`, or ends at gas, so that something else lies against
+/// the colon: an organ, or another loop, whose wall is part of what was measured.
 std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample);
 
 /// From the rectum to the cecum. Thick is what has 6 mm and more: a distended colon's wall has 1 to
 /// 3 mm, a collapsed one's 5 (Macari and Balthazar, AJR 2001; 176: 1105). The colon is looked at in
 /// twelfths around over 12 mm along, each by its median; all around is five sixths of those in
-/// which fat or gas ends the wall, which must be half of them: what touches other organs on more is
-/// not judged. Where it holds three times at least, 4 mm from one to the next, a stretch is told,
+/// which fat ends the wall, which must be half of them: what touches other organs on more is not
+/// judged. Where it holds three times at least, 4 mm from one to the next, a stretch is told,
 /// as a fold that goes all around is thinner; one time in between may be passed over. The last 40
 /// mm, the anal canal's, thick by its sphincters, are left out. None without a flat map. The same
 /// for any number of threads. O(samples).

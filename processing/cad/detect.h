@@ -11,7 +11,7 @@ namespace haustra::cad {
 
 /// Raised whenever detection makes something else of the same input and model: neither findings nor
 /// kept candidates of another version are taken for this one's.
-inline constexpr int detectionVersion = 29;
+inline constexpr int detectionVersion = 30;
 
 struct DetectOptions {
     int threads = 0;

@@ -120,6 +120,7 @@ TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
     EXPECT_TRUE(told({.outerMm = 11.0}).empty()) << "contracted: 4 mm";
     EXPECT_TRUE(told({.share = 0.6}).empty()) << "on one side";
     EXPECT_TRUE(told({.aroundHu = 40.0}).empty()) << "whatever lies against the colon";
+    EXPECT_TRUE(told({.aroundHu = -950.0}).empty()) << "another loop's wall is part of it";
     EXPECT_TRUE(told({.fromMm = 100.0, .toMm = 107.0}).empty()) << "a fold that goes all around";
     EXPECT_TRUE(told({.fromMm = 6.0, .toMm = 38.0}).empty()) << "the anal canal";
 }
@@ -159,6 +160,13 @@ TEST(AnnularWall, ASampleIsAsThickAsItsTissue) {
     const RingTube touched({.aroundHu = 40.0});
     const auto around = cad::gatherEvidence(touched.colon(), {});
     EXPECT_FALSE(cad::wallThicknessMm(around, std::uint32_t(places.size() / 2)));
+    const RingTube besideGas({.aroundHu = -950.0});
+    const auto byGas = cad::gatherEvidence(besideGas.colon(), {});
+    for (std::uint32_t v = 0; v < places.size(); ++v) {
+        if (std::abs(places[v].z - 115.0) < 8.0) {
+            EXPECT_FALSE(cad::wallThicknessMm(byGas, v));
+        }
+    }
 }
 
 TEST(AnnularWall, AsAFindingItIsItsTissue) {
