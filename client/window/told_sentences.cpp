@@ -191,6 +191,13 @@ constexpr const char* sentences[] = {
                       "%1 ml of gas stand in the lumen of the %2 behind a wall of their own, as in "
                       "a catheter's balloon; both were taken out, at %3"),
     QT_TRANSLATE_NOOP("ToldSentences",
+                      "%1 ml behind what looks like a thin wall, as of a catheter's balloon, were "
+                      "taken for the rectum's end, at %2"),
+    QT_TRANSLATE_NOOP(
+        "ToldSentences",
+        "%1 ml of gas lie below where the rectum begins: its end is missing, as where "
+        "a catheter's balloon fills it, at %2"),
+    QT_TRANSLATE_NOOP("ToldSentences",
                       "fluid without tagging (%1 HU) stands under the gas in the %2, its surface "
                       "%3 mm2; what lies in it and beneath is not seen, at %4"),
     QT_TRANSLATE_NOOP("ToldSentences",

@@ -15,7 +15,7 @@ using organs::LumenFinder;
 using store::Attributes;
 
 // Raise them whenever the products change for the same input and options.
-constexpr int segmentationVersion = 26, maskVersion = 18;
+constexpr int segmentationVersion = 27, maskVersion = 19;
 
 // How a mask without a scan is drawn.
 const TissueModel drawnTissue{

@@ -240,6 +240,7 @@ ChainNode nodeOf(const TubePiece& piece, const NodePlaces& places, const BodyFra
     node.lengthMm = std::min(1000.0 * piece.volumeMl / (M_PI * piece.radiusMm * piece.radiusMm),
                              1.5 * glm::distance(places.lowCornerMm, places.highCornerMm));
     node.centerMm = piece.centerMm;
+    node.lowestMm = places.lowestMm;
     for (std::size_t part = 0; part < colonParts; ++part) {
         for (const glm::dvec3& at : places.samplesMm) {
             node.placeLogOdds[part] +=
@@ -373,7 +374,6 @@ PieceGraph makePieceGraph(const Volume<std::int16_t>& hu, const BowelContents& c
     made.frame = frameOf(made, cut, places, softTissueMm);
     for (std::size_t n = 0; n < places.size(); ++n) {
         const std::size_t p = std::size_t(made.pieceOf[n]);
-        made.lowestMm.push_back(places[n].lowestMm);
         made.graph.nodes.push_back(nodeOf(cut.pieces[p], places[n], made.frame));
         if (said[p] == Said::notColon) made.graph.nodes.back().given = -certain;
     }

@@ -17,7 +17,6 @@ struct PieceGraph {
     /// than that under the levels: a bladder full of contrast medium, or a part of the colon that
     /// is tagged more. Or they are too uneven, but a level stands on them.
     std::vector<std::int32_t> doubtful;
-    std::vector<glm::dvec3> lowestMm;  ///< place of each node
     BodyFrame frame;
     std::vector<CollapsePath>
         collapses;  ///< of each junction of that kind: its index is the junction's `path`

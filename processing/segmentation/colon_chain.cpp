@@ -58,6 +58,17 @@ double costCut(const ChainJunction& j) {
     return lnOnePlusExp(j.logOdds);
 }
 
+/// Wider than a rectal catheter, where the rectum's end lies, and its ball's middle at most so
+/// high.
+bool isRectalEnd(const ChainNode& node, double mostHighMm) {
+    constexpr double catheterMm = 4.0;
+    constexpr double leastPlace = 1.0;  // of 1.2 at most
+    constexpr double nearAnus = -3.0;   // 2.4 standard deviations
+    return node.radiusMm > catheterMm && node.centerMm.z <= mostHighMm &&
+           node.placeLogOdds[std::size_t(ColonPart::rectum)] > leastPlace &&
+           node.rectumLogOdds > nearAnus;
+}
+
 /// Pieces that sure lumen joins one after the other: a chain goes through all of them or none.
 struct Tube {
     std::vector<int> nodes;
@@ -437,6 +448,38 @@ private:
         }
     }
 
+    /// The rectum's end, and what stands between as a balloon's gas, beyond openings too narrow for
+    /// one lumen elsewhere.
+    void takeRectalEnd(ColonChain& chain, Visited& seen) const {
+        constexpr double leastOpenMm2 = 10.0;
+        const ChainNode& first = node(chain.nodes.front());
+        const double underItMm = first.centerMm.z - first.radiusMm;
+        const auto doors = [&](int from, const auto& visit) {
+            for (const int j : around_[std::size_t(from)]) {
+                if (junction(j).openMm2 >= leastOpenMm2 && holdsTheSame(j))
+                    visit(otherEnd(j, from));
+            }
+        };
+        const auto takeUnder = [&](int next) {
+            if (seen.test(std::size_t(next)) || node(next).given < 0.0 ||
+                !isRectalEnd(node(next), underItMm))
+                return false;
+            seen.set(std::size_t(next));
+            return true;
+        };
+        doors(chain.nodes.front(), [&](int next) {
+            const Visited before = seen;
+            if (!takeUnder(next)) return;
+            std::vector<int> body{next};
+            floodFill(body, doors, takeUnder);
+            if (std::ranges::any_of(body, [&](int n) { return isBelowRectum(node(n), first); }))
+                chain.rectalEnd.insert(chain.rectalEnd.end(), body.begin(), body.end());
+            else
+                seen = before;
+        });
+        chain.sacs.insert(chain.sacs.end(), chain.rectalEnd.begin(), chain.rectalEnd.end());
+    }
+
     /// What hangs on the chain: sacs of it, or what has to be cut off.
     void finish(ColonChain& chain, const Visited& visited) const {
         Visited seen = visited;
@@ -498,6 +541,7 @@ private:
                 }
             }
         }
+        takeRectalEnd(chain, seen);
     }
     /// Whether doors lead to one piece of the chain, or to neighbours with open lumen between them:
     /// else there is a way through what was left out.
@@ -567,6 +611,11 @@ private:
 };
 
 }  // namespace
+
+bool isBelowRectum(const ChainNode& node, const ChainNode& first) {
+    constexpr double marginMm = 5.0;
+    return isRectalEnd(node, first.lowestMm.z + marginMm);
+}
 
 std::vector<ColonChain> findChains(const ChainGraph& graph, const ChainOptions& options) {
     if (graph.nodes.empty() || graph.nodes.size() > mostNodes) return {};

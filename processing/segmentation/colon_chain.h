@@ -14,6 +14,7 @@ struct ChainNode {
     double radiusMm = 0.0;  ///< of the largest ball inside
     double volumeMl = 0.0;
     glm::dvec3 centerMm{0.0};
+    glm::dvec3 lowestMm{0.0};  ///< its place farthest towards the feet
     std::array<double, colonParts>
         placeLogOdds{};  ///< of lying where that part does, mean over the piece
     std::array<double, colonParts> foldLogOdds{};  ///< of that part's folds, not the small bowel's
@@ -43,7 +44,8 @@ struct ColonChain {
     std::vector<int> nodes;      ///< from the rectum on
     std::vector<int> junctions;  ///< between one node and the next
     std::vector<int> states;     ///< of each node, a ColonPart
-    std::vector<int> sacs;       ///< side pieces that belong to the lumen
+    std::vector<int> sacs;  ///< side pieces that belong to the lumen, and the rectum's end (below)
+    std::vector<int> rectalEnd;  ///< of the sacs, those taken as such
     std::vector<int> cuts;       ///< open junctions that have to be closed
     double score = 0.0;
 };
@@ -53,7 +55,15 @@ struct ChainOptions {
     std::size_t chains = 2;  ///< how many that differ are wanted
 };
 
-/// The best chains, the best first.
+/// Whether a piece lies where only the rectum's end does: in the middle of the pelvis, its ball no
+/// higher than the lowest end of the piece that a chain begins with, and wider than a rectal
+/// catheter. Loops of small bowel sink no deeper than the pouch of Douglas, 5 to 8 cm over the anus
+/// (Standring, Gray's Anatomy, 41st ed., ch. 66).
+bool isBelowRectum(const ChainNode& node, const ChainNode& first);
+
+/// The best chains, the best first. Where a catheter's balloon or a fold all but closes the rectum,
+/// its end below (isBelowRectum) is too far off for a sac, and too small to begin a chain behind a
+/// thin wall: it is one of `sacs` if there is any opening to it, or to what leads down to it.
 std::vector<ColonChain> findChains(const ChainGraph& graph, const ChainOptions& options = {});
 
 }  // namespace haustra::segmentation

@@ -60,6 +60,7 @@ public:
         }
         takeCrumbs();
         if (!options_.asGiven) {
+            takeInBalloonsWalls();
             result_.enclosed =
                 takeInEnclosedGas(contents_.content, cut_, result_.labels, options_.threads);
             labels_ = result_.labels.writable();
@@ -77,6 +78,14 @@ private:
             kept_[std::size_t(pieceOf(n))] = 1;
         for (const int n : chain_.sacs)
             kept_[std::size_t(pieceOf(n))] = 1;
+    }
+    void takeInBalloonsWalls() {
+        if (chain_.rectalEnd.empty()) return;
+        std::vector<std::int32_t> pieces;
+        for (const int n : chain_.rectalEnd)
+            pieces.push_back(pieceOf(n));
+        takeInWallsOf(pieces, contents_.content, cut_, result_.labels, options_.threads);
+        labels_ = result_.labels.writable();
     }
     bool isKept(std::int32_t piece) const { return piece >= 0 && kept_[std::size_t(piece)]; }
 

@@ -59,12 +59,29 @@ public:
             found.back().facing = facing;
             taken.push_back(std::move(body));
         }
-        for (const auto& body : taken)
-            takeIn(body);
+        for (const auto& body : taken) {
+            const auto wall =
+                wallAround(body, [&](std::size_t, std::size_t m) { return isGas(m); });
+            for (const std::uint32_t n : body)
+                labels_[n] = std::uint8_t(LumenLabel::air);
+            takeIn(wall);
+        }
         std::stable_sort(
             found.begin(), found.end(),
             [](const EnclosedGas& a, const EnclosedGas& b) { return a.volumeMl > b.volumeMl; });
         return found;
+    }
+
+    void takeInWallsOf(const std::vector<std::int32_t>& pieces, int threads) {
+        std::vector<char> isOf(cut_.pieces.size(), 0);
+        for (const std::int32_t piece : pieces)
+            isOf[std::size_t(piece)] = 1;
+        const auto body = voxelsWhere(grid_, threads, [&](std::size_t n, glm::ivec3) {
+            return cut_.pieceAt[n] >= 0 && isOf[std::size_t(cut_.pieceAt[n])] && isLumen(n);
+        });
+        takeIn(wallAround(body, [&](std::size_t n, std::size_t m) {
+            return cut_.pieceAt[m] == cut_.pieceAt[n];
+        }));
     }
 
 private:
@@ -148,16 +165,21 @@ private:
         return gas;
     }
 
-    // The wall is what lies on the straight ways of at most its width from the gas to the lumen.
-    void takeIn(const std::vector<std::uint32_t>& body) {
+    // What lies on the straight ways of at most a wall's width from the body to other lumen:
+    // isOwn(voxel of the body, voxel) tells what is the body's.
+    template <class IsOwn>
+    std::vector<std::size_t> wallAround(const std::vector<std::uint32_t>& body,
+                                        const IsOwn& isOwn) const {
         std::vector<std::size_t> wall;
         for (const std::uint32_t n : body) {
             bool side = false;
-            visitFaces(grid_, n, [&](std::size_t m, int) { side = side || !isGas(m); });
+            visitFaces(grid_, n, [&](std::size_t m, int) { side = side || !isOwn(n, m); });
             if (!side) continue;
             const glm::ivec3 v = grid_.voxelAt(n);
             for (const glm::ivec3 step : ball_) {
-                if (!grid_.contains(v + step) || !isLumen(grid_.index(v + step))) continue;
+                if (!grid_.contains(v + step)) continue;
+                const std::size_t to = grid_.index(v + step);
+                if (!isLumen(to) || isOwn(n, to)) continue;
                 const int length = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
                 for (int k = 1; k < length; ++k) {
                     const std::size_t m = grid_.index(
@@ -166,8 +188,10 @@ private:
                 }
             }
         }
-        for (const std::uint32_t n : body)
-            labels_[n] = std::uint8_t(LumenLabel::air);
+        return wall;
+    }
+
+    void takeIn(const std::vector<std::size_t>& wall) {
         for (const std::size_t n : wall)
             labels_[n] = std::uint8_t(LumenLabel::untagged);
         takeInRim(wall);
@@ -201,6 +225,11 @@ std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
                                            const TubePieces& cut, Volume<std::uint8_t>& labels,
                                            int threads) {
     return Enclosed(content, cut, labels).run(threads);
+}
+
+void takeInWallsOf(const std::vector<std::int32_t>& pieces, const Volume<std::uint8_t>& content,
+                   const TubePieces& cut, Volume<std::uint8_t>& labels, int threads) {
+    Enclosed(content, cut, labels).takeInWallsOf(pieces, threads);
 }
 
 }  // namespace haustra::segmentation

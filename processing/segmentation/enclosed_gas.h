@@ -27,4 +27,10 @@ std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
                                            const TubePieces& cut, Volume<std::uint8_t>& labels,
                                            int threads);
 
+/// Takes into `labels` walls of at most 3 mm between lumen in these pieces and lumen in others, as
+/// LumenLabel::untagged: of a balloon that fills the rectum, whose gas and what lies below were
+/// taken for its end. O(voxels).
+void takeInWallsOf(const std::vector<std::int32_t>& pieces, const Volume<std::uint8_t>& content,
+                   const TubePieces& cut, Volume<std::uint8_t>& labels, int threads);
+
 }  // namespace haustra::segmentation

@@ -121,7 +121,8 @@ public:
                 {partAt(level.placeMm), level.placeMm, level.areaMm2, level.fluidHu});
         findCutEnds();
         measureTagging();
-        made_.endsAt = graph_.frame.place(graph_.lowestMm[std::size_t(chain_.nodes.back())]);
+        made_.endsAt =
+            graph_.frame.place(graph_.graph.nodes[std::size_t(chain_.nodes.back())].lowestMm);
         made_.doubts = doubtsOf(made_);
         made_.confidence = courseConfidence(made_.chainConfidence, made_.doubts);
         warn();
@@ -383,6 +384,43 @@ private:
             places.text());
     }
 
+    // A balloon that fills the rectum closes it; one of water looks like its wall.
+    void sayRectalEnd() {
+        constexpr double tellMl = 2.0;
+        if (!chain_.rectalEnd.empty()) {
+            double takenMl = 0.0;
+            ToldPlaces ends;
+            for (const int n : chain_.rectalEnd) {
+                takenMl += pieceOf(n).volumeMl;
+                ends.add(pieceOf(n).centerMm);
+            }
+            made_.warnings.push_back(
+                printed("%.0f ml behind what looks like a thin wall, as of a catheter's balloon, "
+                        "were taken for the rectum's end, at ",
+                        takenMl) +
+                ends.text());
+        }
+        const std::set<int> taken = nodesOf(chain_);
+        const ChainNode& first = graph_.graph.nodes[std::size_t(chain_.nodes.front())];
+        double sumMl = 0.0;
+        ToldPlaces places;
+        for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
+            const TubePiece& piece = pieceOf(int(n));
+            if (taken.count(int(n)) || !piece.mostlyGas() || isTakenIn(piece) ||
+                !isBelowRectum(graph_.graph.nodes[n], first))
+                continue;
+            sumMl += piece.volumeMl;
+            places.add(piece.centerMm);
+        }
+        if (sumMl < tellMl) return;
+        made_.warnings.push_back(
+            printed(
+                "%.0f ml of gas lie below where the rectum begins: its end is missing, as where "
+                "a catheter's balloon fills it, at ",
+                sumMl) +
+            places.text());
+    }
+
     // Bodies of one kind near one part in one line, the largest first.
     void sayLeftOut() {
         constexpr double tellMl = 5.0;
@@ -481,6 +519,7 @@ private:
         for (const std::string& warning : contents_.warnings)
             say(warning);
         sayMetal();
+        sayRectalEnd();
         sayLeftOut();
         sayFarGas();
         sayUnseenTagging();

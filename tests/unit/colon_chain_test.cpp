@@ -75,4 +75,48 @@ TEST(ColonChain, GoesThroughFoldedBowelRatherThanSmooth) {
     }
 }
 
+// Beneath the first piece, whose lowest end lies 60 mm under its middle.
+struct RectalEnd {
+    double middleMm = -70.0, place = 1.2, radiusMm = 5.0, openMm2 = 40.0;
+    bool isTaken() const {
+        ChainGraph graph = row(20.0);
+        graph.nodes[0].lowestMm = {0.0, 0.0, -60.0};
+        graph.nodes.push_back(piece(20.0, -1.0));
+        ChainNode& end = graph.nodes.back();
+        end.centerMm = {0.0, 0.0, middleMm}, end.radiusMm = radiusMm;
+        end.placeLogOdds[std::size_t(ColonPart::rectum)] = place;
+        graph.junctions.push_back(junction(0, 12, JunctionKind::thinWall, -5.0));
+        graph.junctions.back().openMm2 = openMm2;
+        const ColonChain best = findChains(graph).front();
+        return std::ranges::count(best.sacs, 12) + std::ranges::count(best.nodes, 12) > 0;
+    }
+};
+
+TEST(ColonChain, GoesOnToTheRectumsEndThroughANarrowOpening) {
+    EXPECT_TRUE(RectalEnd().isTaken());
+    EXPECT_FALSE((RectalEnd{.middleMm = -40.0}.isTaken())) << "a loop beside the rectum";
+    EXPECT_FALSE((RectalEnd{.place = 0.0}.isTaken())) << "not in the middle";
+    EXPECT_FALSE((RectalEnd{.radiusMm = 3.0}.isTaken())) << "as wide as a catheter";
+    EXPECT_FALSE((RectalEnd{.openMm2 = 0.0}.isTaken())) << "nothing but wall between";
+}
+
+TEST(ColonChain, GoesOnThroughABalloonToTheRectumsEnd) {
+    const auto takesTheBalloon = [](double endMm) {
+        ChainGraph graph = row(20.0);
+        graph.nodes[0].lowestMm = {0.0, 0.0, -60.0};
+        for (const double middleMm : {-40.0, endMm}) {
+            graph.nodes.push_back(piece(20.0, -1.0));
+            graph.nodes.back().centerMm = {0.0, 0.0, middleMm};
+            graph.nodes.back().placeLogOdds[std::size_t(ColonPart::rectum)] = 1.2;
+        }
+        for (const auto& [a, b] : {std::pair(0, 12), std::pair(12, 13)}) {
+            graph.junctions.push_back(junction(a, b, JunctionKind::thinWall, -5.0));
+            graph.junctions.back().openMm2 = 40.0;
+        }
+        return std::ranges::count(findChains(graph).front().sacs, 12) > 0;
+    };
+    EXPECT_TRUE(takesTheBalloon(-70.0));
+    EXPECT_FALSE(takesTheBalloon(-45.0)) << "leads nowhere";
+}
+
 }  // namespace

@@ -755,6 +755,24 @@ TEST(FindColon, ABalloonInTheRectumIsLumen) {
         EXPECT_GT(glm::distance(body.centerMm, balloon.a), 20.0);
 }
 
+// Filled with water it closes the rectum, and what lies below is told.
+TEST(FindColon, ABalloonThatClosesTheRectumIsTold) {
+    const auto drawn = [](bool balloon) {
+        Drawing drawing;
+        drawing.paintColon([](glm::dvec3 p) { return p.y >= levelMm && p.z > 100.0; });
+        if (balloon)
+            drawing.paint(
+                20, [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(160, 168, 46)) < 23.0; });
+        return drawing;
+    };
+    const auto open = find(drawn(false).scan()), closed = find(drawn(true).scan());
+    ASSERT_TRUE(open && closed);
+    constexpr auto told = "below where the rectum begins";
+    EXPECT_FALSE(tells(*open, told));
+    EXPECT_TRUE(tells(*closed, told));
+    EXPECT_TRUE(isOnePiece(*closed));
+}
+
 // Lying on the left side, down is towards the patient's left.
 TEST(FindColon, FluidWithoutTaggingIsFoundInALateralScan) {
     const auto water = [](glm::dvec3 p) {

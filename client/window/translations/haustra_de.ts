@@ -896,6 +896,14 @@
         <translation>%2: %1 ml Gas stehen im Lumen hinter einer eigenen Wand, wie im Ballon eines Katheters; beides wurde herausgenommen, bei %3</translation>
     </message>
     <message>
+        <source>%1 ml behind what looks like a thin wall, as of a catheter&apos;s balloon, were taken for the rectum&apos;s end, at %2</source>
+        <translation>%1 ml hinter einer scheinbaren dünnen Wand, wie der eines Katheterballons, wurden für das Ende des Rektums gehalten, bei %2</translation>
+    </message>
+    <message>
+        <source>%1 ml of gas lie below where the rectum begins: its end is missing, as where a catheter&apos;s balloon fills it, at %2</source>
+        <translation>%1 ml Gas liegen unterhalb des Beginns des Rektums: dessen Ende fehlt, wie wo der Ballon eines Katheters es ausfüllt, bei %2</translation>
+    </message>
+    <message>
         <source>fluid without tagging (%1 HU) stands under the gas in the %2, its surface %3 mm2; what lies in it and beneath is not seen, at %4</source>
         <translation>%2: Unmarkierte Flüssigkeit (%1 HU) steht unter dem Gas, ihre Oberfläche %3 mm²; was in ihr und darunter liegt, ist nicht zu sehen, bei %4</translation>
     </message>
