@@ -77,6 +77,12 @@ std::optional<Code> recumbency(PatientPosition position) {
     return std::nullopt;
 }
 
+/// DICOM has leap seconds, DCMTK does not.
+std::string withoutLeapSecond(std::string time) {
+    if (time.size() >= 6 && time.compare(4, 2, "60") == 0) time.replace(4, 2, "59");
+    return time;
+}
+
 double micrometres(double mm) {
     return std::round(mm * 1e3) / 1e3;
 }
@@ -234,7 +240,8 @@ private:
             if (!source_.studyDate.empty())
                 out_.string(contains, Type::VT_Date, CODE_DCM_StudyDate, source_.studyDate);
             if (!source_.studyTime.empty())
-                out_.string(contains, Type::VT_Time, CODE_DCM_StudyTime, source_.studyTime);
+                out_.string(contains, Type::VT_Time, CODE_DCM_StudyTime,
+                            withoutLeapSecond(source_.studyTime));
             out_.code(contains, CODE_DCM_Modality, computedTomography);
             length(contains, CODE_DCM_HorizontalPixelSpacing, source_.pixelSpacingMm.x);
             length(contains, CODE_DCM_VerticalPixelSpacing, source_.pixelSpacingMm.y);
@@ -399,34 +406,82 @@ Result<void> sameImages(const Series& series, const SourceSeries& source,
                 place);
 }
 
-/// The identity's attributes in UTF-8, from the first image of the series.
+OFString textOf(DcmItem& item, const DcmTagKey& tag) {
+    OFString text;
+    item.findAndGetOFStringArray(tag, text);
+    return text;
+}
+
+/// The identity's attributes and their character set, as one image has them.
+Result<void> readIdentityOf(const std::filesystem::path& file, DcmItem& identity) {
+    DcmFileFormat format;
+    OFCondition condition =
+        format.loadFileUntilTag(OFFilename(file.c_str()), EXS_Unknown, EGL_noChange,
+                                DCM_MaxReadLength, ERM_autoDetect, DCM_PixelData);
+    if (condition.good()) {
+        DcmItem& dataset = *format.getDataset();
+        const OFString characters = textOf(dataset, DCM_SpecificCharacterSet);
+        if (!characters.empty())
+            condition = identity.putAndInsertOFStringArray(DCM_SpecificCharacterSet, characters);
+        for (const DcmTagKey& tag : identityTags) {
+            if (condition.good() && dataset.tagExists(tag))
+                condition = dataset.findAndInsertCopyOfElement(tag, &identity);
+        }
+    }
+    if (condition.good()) return {};
+    return fail(ErrorKind::badInput,
+                std::string("whose series it is cannot be read: ") + condition.text(),
+                file.string());
+}
+
+/// Images of one series may name two patients all the same, where an archive has mixed them.
+Result<void> sameIdentity(const Series& series, DcmItem& identity) {
+    std::set<std::filesystem::path> read{series.images.front().file};
+    for (const ImageHeader& image : series.images) {
+        if (!read.insert(image.file).second) continue;
+        DcmItem other;
+        TRY(readIdentityOf(image.file, other));
+        for (const DcmTagKey& tag : identityTags) {
+            if (textOf(other, tag) == textOf(identity, tag)) continue;
+            return fail(ErrorKind::badInput,
+                        std::string("the series' images differ in ") + DcmTag(tag).getTagName() +
+                            ", so that it is not known whose they are: this one is not as " +
+                            series.images.front().file.filename().string(),
+                        image.file.string());
+        }
+    }
+    return {};
+}
+
+/// The identity's attributes, of which all images must say the same: in UTF-8, or in their own
+/// character set where that is none that can be converted.
 Result<void> readIdentity(const ColonCadReportOptions& options, const SourceSeries& source,
                           DcmItem& identity) {
     const std::string place = options.series.string();
     auto found = TRY(findSeries(options.series, options.threads, {}));
     const auto series = TRY(chooseSeries(std::move(found), source.seriesUid, options.series));
     TRY(sameImages(series, source, place));
-    DcmFileFormat format;
-    OFCondition condition =
-        format.loadFileUntilTag(OFFilename(series.images.front().file.c_str()), EXS_Unknown,
-                                EGL_noChange, DCM_MaxReadLength, ERM_autoDetect, DCM_PixelData);
-    OFString characters;
-    if (condition.good()) {
-        format.getDataset()->findAndGetOFStringArray(DCM_SpecificCharacterSet, characters);
-        if (!characters.empty())
-            condition = identity.putAndInsertOFStringArray(DCM_SpecificCharacterSet, characters);
-    }
-    for (const DcmTagKey& tag : identityTags) {
-        if (condition.good() && format.getDataset()->tagExists(tag))
-            condition = format.getDataset()->findAndInsertCopyOfElement(tag, &identity);
-    }
-    if (condition.good()) condition = identity.convertToUTF8();
-    if (condition.bad()) {
+    const std::filesystem::path& file = series.images.front().file;
+    TRY(readIdentityOf(file, identity));
+    TRY(sameIdentity(series, identity));
+    if (identity.convertToUTF8().good()) return {};
+    identity.clear();
+    TRY(readIdentityOf(file, identity));
+    if (textOf(identity, DCM_SpecificCharacterSet).empty()) {
         return fail(ErrorKind::badInput,
-                    std::string("whose series it is cannot be read: ") + condition.text(),
-                    series.images.front().file.string());
+                    "the patient's name or another of its texts has characters beyond ASCII, and "
+                    "no character set is named (SpecificCharacterSet)",
+                    file.string());
     }
     return {};
+}
+
+constexpr char utf8[] = "ISO_IR 192";
+
+/// Of an identity that could not be converted: its own, empty else.
+OFString ownCharacterSet(DcmItem& identity) {
+    const OFString characters = textOf(identity, DCM_SpecificCharacterSet);
+    return characters == utf8 ? OFString() : characters;
 }
 
 Result<void> checkSource(const SourceSeries& source, const std::string& place) {
@@ -448,16 +503,16 @@ bool isAscii(std::string_view text) {
 }
 
 /// Readers that know ASCII only are served where that is all there is.
-bool needsUtf8(const Findings& findings, DcmItem& identity) {
+bool needsUtf8(const Findings& findings) {
     const DetectionModel& model = findings.model;
-    bool ascii = isAscii(model.software) && isAscii(model.name) && isAscii(model.trainedOn) &&
-                 std::ranges::all_of(findings.warnings, isAscii);
-    for (const DcmTagKey& tag : identityTags) {
-        OFString value;
-        identity.findAndGetOFStringArray(tag, value);
-        ascii &= isAscii({value.c_str(), value.length()});
-    }
-    return !ascii;
+    return !(isAscii(model.software) && isAscii(model.name) && isAscii(model.trainedOn) &&
+             std::ranges::all_of(findings.warnings, isAscii));
+}
+bool needsUtf8(DcmItem& identity) {
+    return !std::ranges::all_of(identityTags, [&](const DcmTagKey& tag) {
+        const OFString text = textOf(identity, tag);
+        return isAscii({text.c_str(), text.length()});
+    });
 }
 
 /// The data set's bytes, for hashing.
@@ -485,10 +540,11 @@ OFCondition fillHeader(DSRDocument& document, const Findings& findings,
     };
     keep(document.createNewSeriesInStudy(source.studyUid.c_str()));
     keep(document.setStudyDate(source.studyDate.c_str()));
-    keep(document.setStudyTime(source.studyTime.c_str()));
+    const std::string studyTime = withoutLeapSecond(source.studyTime);
+    keep(document.setStudyTime(studyTime.c_str()));
     // Of the study, so that the same findings give the same file.
     keep(document.setContentDate(source.studyDate.empty() ? "19000101" : source.studyDate.c_str()));
-    keep(document.setContentTime(source.studyTime.empty() ? "000000" : source.studyTime.c_str()));
+    keep(document.setContentTime(studyTime.empty() ? "000000" : studyTime.c_str()));
     keep(document.setSeriesDescription("Haustra colon CAD"));
     keep(document.setManufacturer("Haustra"));
     keep(document.setManufacturerModelName("Haustra colon CAD"));
@@ -529,7 +585,10 @@ Result<void> save(DcmFileFormat& format, const std::filesystem::path& file) {
     const OFCondition saved =
         format.saveFile(OFFilename(made.beside().c_str()), EXS_LittleEndianExplicit,
                         EET_ExplicitLength, EGL_recalcGL, EPD_withoutPadding);
-    if (saved.bad()) return fail(ErrorKind::io, "the report cannot be written", file.string());
+    if (saved.bad()) {
+        return fail(ErrorKind::io, std::string("the report cannot be written: ") + saved.text(),
+                    file.string());
+    }
     return made.publish();
 }
 
@@ -549,7 +608,15 @@ Result<void> writeColonCadReport(const std::filesystem::path& file, const Findin
     DSRDocument document(Type::DT_ColonCadSR);
     DcmFileFormat format;
     DcmDataset& dataset = *format.getDataset();
-    if (needsUtf8(findings, identity)) document.setSpecificCharacterSetType(Type::CS_UTF8);
+    const OFString characters = ownCharacterSet(identity);
+    if (!characters.empty() && needsUtf8(findings)) {
+        return fail(ErrorKind::unsupported,
+                    std::string("the patient's name is in the character set ") +
+                        characters.c_str() + ", in which the findings' own text cannot be written",
+                    options.series.string());
+    }
+    if (characters.empty() && (needsUtf8(findings) || needsUtf8(identity)))
+        document.setSpecificCharacterSetType(Type::CS_UTF8);
     OFCondition condition = fillHeader(document, findings, source);
     if (condition.good()) condition = Report(document.getTree(), findings, source).write();
     if (condition.good()) condition = document.getTree().setTemplateIdentification("4120", "DCMR");
@@ -558,6 +625,8 @@ Result<void> writeColonCadReport(const std::filesystem::path& file, const Findin
         if (condition.good() && identity.tagExists(tag))
             condition = identity.findAndInsertCopyOfElement(tag, &dataset);
     }
+    if (condition.good() && !characters.empty())
+        condition = dataset.putAndInsertOFStringArray(DCM_SpecificCharacterSet, characters);
     if (condition.bad()) {
         return fail(ErrorKind::badInput,
                     std::string("the findings make no DICOM report: ") + condition.text(), place);

@@ -32,7 +32,8 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
         if (auto surface = readSurface(source))
             prepared.wall = files.facts.surface = std::move(*surface);
         else
-            spdlog::warn("case {}: its overview has no colon: {}", name, describe(surface.error()));
+            spdlog::warn("a case opens without its colon in the overview: {}",
+                         surface.error().message);
     }
     if (files.findings) {
         if (auto findings = readFindings(source, files.facts.grid, files.facts.centerline,
@@ -42,12 +43,11 @@ Result<std::shared_ptr<const OpenCase>> load(const store::CaseStore& store, Rend
             if (auto biopsy = scanBiopsyOf(files.facts.findings->product))
                 files.facts.scanBiopsy = std::move(*biopsy);
             else
-                spdlog::warn("case {}: it opens without its own biopsy colours: {}", name,
-                             describe(biopsy.error()));
+                spdlog::warn("a case opens without its own biopsy colours: {}",
+                             biopsy.error().message);
         } else {
             files.facts.findingsDamaged = true;
-            spdlog::warn("case {}: it opens without its findings: {}", name,
-                         describe(findings.error()));
+            spdlog::warn("a case opens without its findings: {}", findings.error().message);
         }
     }
     if (!files.facts.centerline.points.empty())

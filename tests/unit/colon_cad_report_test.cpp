@@ -454,6 +454,44 @@ TEST_F(ColonCadReport, IsWhoseItIsWhereTheSeriesIsAtHand) {
     expectSound();
 }
 
+// Yamada Tarou in kanji, as DICOM PS3.5 H.3.1 has it.
+TEST_F(ColonCadReport, KeepsANameWhoseCharactersCannotBeConverted) {
+    const std::string kanji = "Yamada^Tarou=\x1b$B;3ED\x1b(B^\x1b$BB@O:\x1b(B";
+    for (const fs::path& path : tests::filesIn(folder())) {
+        tests::set(path, DCM_SpecificCharacterSet, "\\ISO 2022 IR 87");
+        tests::set(path, DCM_PatientName, kanji);
+    }
+    const auto items = written(someFindings(), {.series = folder()});
+    if (attribute(DCM_SpecificCharacterSet) != "ISO_IR 192") {  // a DCMTK that knows it converts it
+        EXPECT_EQ(attribute(DCM_SpecificCharacterSet), "\\ISO 2022 IR 87");
+        EXPECT_EQ(attribute(DCM_PatientName), kanji);
+        fs::remove(file());
+        Findings warned = someFindings();
+        warned.warnings = {"Größe"};
+        expectRefused(warned, source_, "ISO 2022 IR 87", {.series = folder()});
+    }
+    EXPECT_EQ(countOf(items, "Composite Feature"), 4);
+}
+
+TEST_F(ColonCadReport, TextOfNoNamedCharacterSetIsRefused) {
+    for (const fs::path& path : tests::filesIn(folder()))
+        tests::set(path, DCM_PatientName, "M\xfcller");
+    expectRefused(someFindings(), source_, "SpecificCharacterSet", {.series = folder()});
+}
+
+TEST_F(ColonCadReport, ImagesOfTwoPatientsAreRefused) {
+    tests::set(folder() / "0024.dcm", DCM_PatientID, "ID-8");
+    expectRefused(someFindings(), source_, "differ in PatientID", {.series = folder()});
+}
+
+TEST_F(ColonCadReport, ALeapSecondIsTheOneBefore) {
+    source_.studyTime = "235960.5";
+    const auto items = written(someFindings());
+    EXPECT_EQ(attribute(DCM_StudyTime), "235959.5");
+    EXPECT_EQ(attribute(DCM_ContentTime), "235959.5");
+    EXPECT_EQ(named(items, "Study Time")->value, "235959.5");
+}
+
 TEST_F(ColonCadReport, AnotherSeriesThanTheCasesIsRefused) {
     const fs::path other = temporary_.path() / "other";
     tests::write(other, tests::patternScan(tests::smallGrid()), "other");
