@@ -309,7 +309,13 @@ void Session::opened(const protocol::CaseOpened& message) {
         sameStrip(caseInfo_->flat, info->flat) && sameGrid(caseInfo_->grid, info->grid);
     if (!same) {
         // What was chosen for a scan, and that its first reading is done, is not another's.
-        if (!chosenAnew && caseInfo_ && caseInfo_->scan != info->scan) detection_ = {};
+        if (!chosenAnew && caseInfo_ && caseInfo_->scan != info->scan) {
+            detection_ = {};
+            refusals_.push_back({ErrorKind::badInput,
+                                 "the case is of another scan now, perhaps another patient's: it "
+                                 "is that one that is read from here on",
+                                 info->name});
+        }
         findings_.reset();
         ++findingsRevision_;
         caseInfo_ = std::make_shared<const CaseInfo>(std::move(*info));

@@ -416,6 +416,9 @@ TEST_F(ClientReaderOfAReplacedScan, TheFirstReadingOfTheOneIsNotTheOthers) {
     EXPECT_EQ(findings.choice().mode, DetectionMode::off);
     EXPECT_FALSE(findings.choice().firstPassDone);
     EXPECT_TRUE(findings.shown().empty());
+    const auto refusals = reader_->session().takeRefusals();
+    ASSERT_FALSE(refusals.empty()) << "whoever reads must know";
+    EXPECT_NE(refusals[0].message.find("perhaps another patient's"), std::string::npos);
 }
 
 TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
@@ -430,8 +433,9 @@ TEST_F(ClientReaderOfAReplacedScan, WhatWasMarkedOnTheOneIsNotSentToTheOther) {
     EXPECT_EQ(reader_->session().caseInfo()->scan, "B");
     // The second was stored before the link broke; the third is still owed to its own scan.
     const auto refusals = reader_->session().takeRefusals();
-    ASSERT_EQ(refusals.size(), 1u);
-    EXPECT_NE(refusals[0].message.find("another scan"), std::string::npos);
+    ASSERT_EQ(refusals.size(), 2u);
+    EXPECT_NE(refusals[0].message.find("perhaps another patient's"), std::string::npos);
+    EXPECT_NE(refusals[1].message.find("bookmarks on the former one"), std::string::npos);
     EXPECT_EQ(server_.storedBookmarkKeys().size(), 3u);
     for (const Bookmark& bookmark : reader_->session().bookmarks())
         EXPECT_EQ(bookmark.note.find("third"), std::string::npos);
