@@ -228,12 +228,15 @@ std::vector<JudgedPlace> hyperplasticFindings(const std::vector<const EvaluatedC
 
 std::vector<FrocPoint> frocCurve(const std::vector<const EvaluatedCase*>& cases, int resamples) {
     if (!holdPolyps(cases)) return {};
+    const auto holders =
+        std::ranges::count_if(cases, [](const EvaluatedCase* each) { return holdPolyps({each}); });
     std::vector<double> wanted;
     for (double n = -3.0; n <= 4.0; n += 0.5)
         wanted.push_back(std::exp2(n));
     std::vector<FrocPoint> curve;
     for (const auto& [threshold, sensitivity] : sensitivities(cases, wanted))
-        curve.push_back({wanted[curve.size()], sensitivity, 0.0, 0.0, threshold});
+        curve.push_back({wanted[curve.size()], sensitivity, 0.0, 1.0, threshold});
+    if (holders < 2) return curve;
     std::mt19937 random(1);
     std::vector<std::vector<double>> drawn(wanted.size());
     for (int n = 0; n < resamples; ++n) {

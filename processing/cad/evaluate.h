@@ -78,7 +78,8 @@ bool countsInCurve(const TrueLesion& lesion);
 
 /// One point of the free-response ROC curve, with the 2.5 and 97.5 % of `resamples` bootstrap
 /// samples of the cases; of samples without such a lesion nothing can be said, and they are left
-/// out.
+/// out. Where fewer than two cases have one, all samples are alike and tell nothing of other cases:
+/// 0 and 1.
 struct FrocPoint {
     double falsePositives = 0.0;                      ///< a scan
     double sensitivity = 0.0, low = 0.0, high = 0.0;  ///< of neoplastic lesions from 6 mm

@@ -707,9 +707,16 @@ Result<void> runEvaluate(const CadArguments& arguments) {
     report["missed"] = jsonOf(cad::missedLesions(every, point));
     report["false_findings"] = jsonOf(cad::falseFindings(every, point));
     report["hyperplastic_findings"] = jsonOf(cad::hyperplasticFindings(every, point));
+    const auto hasPolyps = [](const cad::EvaluatedCase* each) {
+        return std::ranges::any_of(each->truth, cad::countsInCurve);
+    };
     const auto curve = cad::frocCurve(every);
     if (curve.empty())
         fmt::print("No polyp from 6 mm is in these cases: nothing was found or missed.\n");
+    else if (std::ranges::count_if(every, hasPolyps) < 2)
+        fmt::print(
+            "Fewer than two cases have polyps from 6 mm: of others nothing is known, and the "
+            "bands are all.\n");
     report["froc"] = nlohmann::ordered_json::array();
     for (const cad::FrocPoint& p : curve)
         report["froc"].push_back({p.falsePositives, p.sensitivity, p.low, p.high});

@@ -756,8 +756,13 @@ TEST(Evaluation, WithoutAPolypThereIsNoCurve) {
     found.truth.resize(1);
     found.truth[0].diameterMm = 8.0;
     found.places.push_back({0.95, 8.0, 0, ""});
-    const auto curve = cad::frocCurve({&none, &none, &found}, 50);
+    const auto curve = cad::frocCurve({&none, &found, &found}, 50);
     ASSERT_FALSE(curve.empty());
+    for (const cad::FrocPoint& point : cad::frocCurve({&none, &found}, 50)) {
+        EXPECT_DOUBLE_EQ(point.sensitivity, 1.0);
+        EXPECT_DOUBLE_EQ(point.low, 0.0) << "of one case nothing is known of others";
+        EXPECT_DOUBLE_EQ(point.high, 1.0);
+    }
     for (const cad::FrocPoint& point : curve) {
         EXPECT_DOUBLE_EQ(point.sensitivity, 1.0);
         EXPECT_DOUBLE_EQ(point.low, 1.0);
