@@ -37,6 +37,10 @@ constexpr const char* sentences[] = {
         "ToldSentences",
         "on %1 mm of the colon, from %2 mm on, nothing is told of how thick the wall is: %3 HU at "
         "most behind it are fluid's, around the colon or in a wall that is swollen"),
+    QT_TRANSLATE_NOOP(
+        "ToldSentences",
+        "the wall, or what lies between it and other loops, is thick all around at "
+        "%1 mm: other bowel may lie on it without fat between, or a cancer narrow it"),
     QT_TRANSLATE_NOOP("ToldSentences", "polyps may be missed: %1"),
     QT_TRANSLATE_NOOP("ToldSentences",
                       "findings %1, from %2 mm on, lie rim to rim, %3 mm wide in all: they may be "

@@ -127,9 +127,13 @@ std::vector<VoxelRun> tissueOf(const AnnularWall& wall, const PreparedColon& col
     return runsOf(voxels, grid);
 }
 
-}  // namespace
+// How deep tissue reaches behind a sample, mm, and whether another loop's gas ends it.
+struct TissueBehind {
+    double mm = unbounded;  // where nothing ends it
+    bool isEndedByGas = false;
+};
 
-std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample) {
+TissueBehind tissueBehind(const WallEvidence& evidence, std::uint32_t sample) {
     constexpr double stepMm = 0.5, edgeMm = 3.0;  // by then an edge's blur has passed
     const SmoothScan& scan = *evidence.smooth;
     const glm::dmat4& voxelFromPatient = scan.voxelFromPatient();
@@ -137,34 +141,31 @@ std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_
                           glm::dvec4(evidence.samples.mesh.vertices[sample], 1.0));
     const glm::vec3 perMm(glm::dmat3(voxelFromPatient) *
                           glm::dvec3(evidence.shapes[sample].intoWall));
-    const double tissueHu = leastTissueHu(evidence);
-    const double gasHu = 0.5 * (evidence.statistics.fatHu + emptyHu);
+    const auto huAt = [&](double mm) { return double(scan.linear(start + float(mm) * perMm)); };
+    const double tissueHu = leastTissueHu(evidence),
+                 gasHu = 0.5 * (evidence.statistics.fatHu + emptyHu);
     bool inTissue = false;
     double before = 0.0;
     for (double mm = stepMm; mm <= deepestWallMm; mm += stepMm) {
-        const double hu = scan.linear(start + float(mm) * perMm);
+        const double hu = huAt(mm);
         if (inTissue && hu < tissueHu) {
+            TissueBehind behind{mm - stepMm * (tissueHu - hu) / std::max(before - hu, 1e-6)};
             for (double beyond = mm; beyond <= mm + edgeMm; beyond += stepMm)
-                if (scan.linear(start + float(beyond) * perMm) < gasHu) return std::nullopt;
-            return mm - stepMm * (tissueHu - hu) / std::max(before - hu, 1e-6);
+                behind.isEndedByGas |= huAt(beyond) < gasHu;
+            return behind;
         }
         inTissue |= hu >= tissueHu;
-        if (!inTissue && mm >= edgeMm) return 0.0;
+        if (!inTissue && mm >= edgeMm) return {0.0};
         before = hu;
     }
-    return std::nullopt;
+    return {};
 }
 
-std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
-                                      int threads) {
+// Stretches whose wall is thick all around by the thickness of one sample in `stride`.
+std::vector<AnnularWall> stretchesOf(const PreparedColon& colon, const WallEvidence& evidence,
+                                     const SectionsOfWall& places,
+                                     std::span<const double> thickness) {
     const std::size_t count = evidence.samples.mesh.vertices.size();
-    if (colon.flat.surface.triangles.empty() || count == 0) return {};
-    std::vector<double> thickness(count / stride + 1, unbounded);
-    parallelFor(thickness.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end && n * stride < count; ++n)
-            thickness[n] = wallThicknessMm(evidence, std::uint32_t(n * stride)).value_or(unbounded);
-    });
-    const SectionsOfWall places(colon, evidence.samples);
     std::vector<Rays> sections(places.sections());
     for (std::size_t n = 0; n * stride < count; ++n) {
         const auto sample = std::uint32_t(n * stride);
@@ -212,6 +213,41 @@ std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvid
             wall.channelMm =
                 std::min(wall.channelMm, 2.0 * poseAtArc(colon.centerline, arcMm).point.radiusMm);
     }
+    return walls;
+}
+
+}  // namespace
+
+std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_t sample) {
+    const TissueBehind behind = tissueBehind(evidence, sample);
+    if (behind.isEndedByGas || behind.mm == unbounded) return std::nullopt;
+    return behind.mm;
+}
+
+std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
+                                      int threads) {
+    const std::size_t count = evidence.samples.mesh.vertices.size();
+    if (colon.flat.surface.triangles.empty() || count == 0) return {};
+    std::vector<double> toFat(count / stride + 1, unbounded), toFatOrGas = toFat;
+    parallelFor(toFat.size(), 4096, threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end && n * stride < count; ++n) {
+            const TissueBehind behind = tissueBehind(evidence, std::uint32_t(n * stride));
+            toFatOrGas[n] = behind.mm;
+            if (!behind.isEndedByGas) toFat[n] = behind.mm;
+        }
+    });
+    const SectionsOfWall places(colon, evidence.samples);
+    std::vector<AnnularWall> walls = stretchesOf(colon, evidence, places, toFat);
+    const std::size_t sure = walls.size();
+    for (AnnularWall& wall : stretchesOf(colon, evidence, places, toFatOrGas)) {
+        const auto overlaps = [&](const AnnularWall& other) {
+            return wall.fromMm <= other.toMm && other.fromMm <= wall.toMm;
+        };
+        if (std::any_of(walls.begin(), walls.begin() + std::ptrdiff_t(sure), overlaps)) continue;
+        wall.isBesideLoops = true;
+        walls.push_back(std::move(wall));
+    }
+    std::ranges::sort(walls, {}, &AnnularWall::fromMm);
     return walls;
 }
 

@@ -22,6 +22,7 @@ struct AnnularWall {
     double thicknessMm = 0.0;                 ///< of its wall, median
     double middleHu = 0.0;                    ///< median of the smoothed scan half-way through it
     double channelMm = 0.0;                   ///< twice the path's least distance from it
+    bool isBesideLoops = false;               ///< thick as far as other loops' gas alone
     std::vector<std::uint32_t> samples = {};  ///< its wall, ascending
     double lengthMm() const { return toMm - fromMm; }
 };
@@ -36,10 +37,12 @@ std::optional<double> wallThicknessMm(const WallEvidence& evidence, std::uint32_
 /// 3 mm, a collapsed one's 5 (Macari and Balthazar, AJR 2001; 176: 1105). The colon is looked at in
 /// twelfths around over 12 mm along, each by its median; all around is five sixths of those in
 /// which fat ends the wall, which must be half of them: what touches other organs on more is not
-/// judged. Where it holds three times at least, 4 mm from one to the next, a stretch is told,
-/// as a fold that goes all around is thinner; one time in between may be passed over. The last 40
-/// mm, the anal canal's, thick by its sphincters, are left out. None without a flat map. The same
-/// for any number of threads. O(samples).
+/// judged. Where it holds three times at least, 4 mm from one to the next, a stretch is told, as a
+/// fold that goes all around is thinner; one time in between may be passed over. Stretches that
+/// hold where the ends at other loops' gas count, too, and touch none of the others, are
+/// isBesideLoops: other bowel's wall may be part of what is thick. The last 40 mm, the anal
+/// canal's, thick by its sphincters, are left out. None without a flat map. The same for any number
+/// of threads. O(samples).
 std::vector<AnnularWall> annularWalls(const PreparedColon& colon, const WallEvidence& evidence,
                                       int threads);
 

@@ -250,16 +250,22 @@ void warnOfUnexaminedWall(const WallEvidence& evidence, Findings& findings) {
             untaggedMm2));
 }
 
-// Those that may be a tumour are added to the findings, longer ones told by a warning alone, and
-// all in which there is fluid by one.
+// Those that may be a tumour are added to the findings, longer ones told by a warning alone, all in
+// which there is fluid by one, and all beside other loops by one.
 void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, int threads,
                       Findings& findings, std::vector<Finding>& made) {
     const auto segments = segmentsAlong(colon.centerline, colon.pieces);
     double fluidMm = 0.0, fluidFromMm = 0.0, fluidHu = 0.0;
+    std::string besideLoops;
     for (const AnnularWall& wall : annularWalls(colon, evidence, threads)) {
         if (isFluid(wall, evidence.statistics)) {
             if (fluidMm == 0.0) fluidFromMm = wall.fromMm;
             fluidMm += wall.lengthMm(), fluidHu = std::max(fluidHu, wall.middleHu);
+            continue;
+        }
+        if (wall.isBesideLoops) {
+            besideLoops +=
+                printed(besideLoops.empty() ? "%.0f-%.0f" : ", %.0f-%.0f", wall.fromMm, wall.toMm);
             continue;
         }
         if (wall.channelMm > widestChannelMm) {
@@ -280,6 +286,11 @@ void tellAnnularWalls(const PreparedColon& colon, const WallEvidence& evidence, 
         // Whatever point a model operates at: it has not weighed this.
         made.back().score = std::max(annularScore, findings.operatingPoint);
     }
+    if (!besideLoops.empty())
+        findings.warnings.push_back(
+            printed("the wall, or what lies between it and other loops, is thick all around at "
+                    "%s mm: other bowel may lie on it without fat between, or a cancer narrow it",
+                    besideLoops.c_str()));
     if (fluidMm > 0.0)
         findings.warnings.push_back(printed(
             "on %.0f mm of the colon, from %.0f mm on, nothing is told of how thick the wall is: "

@@ -120,7 +120,6 @@ TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
     EXPECT_TRUE(told({.outerMm = 11.0}).empty()) << "contracted: 4 mm";
     EXPECT_TRUE(told({.share = 0.6}).empty()) << "on one side";
     EXPECT_TRUE(told({.aroundHu = 40.0}).empty()) << "whatever lies against the colon";
-    EXPECT_TRUE(told({.aroundHu = -950.0}).empty()) << "another loop's wall is part of it";
     EXPECT_TRUE(told({.fromMm = 100.0, .toMm = 107.0}).empty()) << "a fold that goes all around";
     EXPECT_TRUE(told({.fromMm = 6.0, .toMm = 38.0}).empty()) << "the anal canal";
 }
@@ -128,6 +127,16 @@ TEST(AnnularWall, WhatIsThickForAnotherReasonIsNot) {
 TEST(AnnularWall, MayLieAgainstAnOrganOnUpToHalfOfItsCircumference) {
     EXPECT_EQ(told({.organShare = 0.35}).size(), 1u);
     EXPECT_TRUE(told({.organShare = 0.7}).empty());
+}
+
+// Another loop's wall is part of what is measured there.
+TEST(AnnularWall, IsNotSureWhereOnlyOtherLoopsGasEndsIt) {
+    const auto walls = told({.aroundHu = -950.0});
+    ASSERT_EQ(walls.size(), 1u);
+    EXPECT_TRUE(walls[0].isBesideLoops);
+    EXPECT_NEAR(walls[0].thicknessMm, 17.5 - 7.0, 2.0);  // gas blurs farther in than fat
+    EXPECT_FALSE(told({})[0].isBesideLoops);
+    EXPECT_TRUE(told({.channelMm = openMm, .aroundHu = -950.0}).empty()) << "nothing is thick";
 }
 
 TEST(AnnularWall, IsNotLookedForWithoutAFlatMap) {
@@ -237,6 +246,12 @@ TEST(AnnularWall, AShortOneIsAFindingAndALongOneAWarning) {
     EXPECT_TRUE(open.findings.empty()) << "what lies around a lumen that is not narrowed";
     EXPECT_TRUE(std::ranges::any_of(open.warnings, [](const std::string& warning) {
         return warning.find("but the lumen is 28 mm wide") != std::string::npos;
+    }));
+
+    const Findings besideLoops = findingsOf({.aroundHu = -950.0});
+    EXPECT_TRUE(besideLoops.findings.empty());
+    EXPECT_TRUE(std::ranges::any_of(besideLoops.warnings, [](const std::string& warning) {
+        return warning.find("what lies between it and other loops") != std::string::npos;
     }));
 
     const Findings segment = findingsOf({.fromMm = 80.0, .toMm = 220.0});

@@ -1109,6 +1109,10 @@
         <translation>Auf %1 mm des Kolons, ab %2 mm, wird nicht gesagt, wie dick die Wand ist: Höchstens %3 HU dahinter gehören zu Flüssigkeit, um das Kolon oder in einer geschwollenen Wand</translation>
     </message>
     <message>
+        <source>the wall, or what lies between it and other loops, is thick all around at %1 mm: other bowel may lie on it without fat between, or a cancer narrow it</source>
+        <translation>Die Wand, oder was zwischen ihr und anderen Schlingen liegt, ist bei %1 mm ringsum dick: Anderer Darm kann ohne Fett dazwischen anliegen, oder ein Karzinom engt sie ein</translation>
+    </message>
+    <message>
         <source>polyps may be missed: %1</source>
         <translation>Polypen können übersehen sein: %1</translation>
     </message>
