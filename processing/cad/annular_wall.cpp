@@ -150,8 +150,13 @@ TissueBehind tissueBehind(const WallEvidence& evidence, std::uint32_t sample) {
         const double hu = huAt(mm);
         if (inTissue && hu < tissueHu) {
             TissueBehind behind{mm - stepMm * (tissueHu - hu) / std::max(before - hu, 1e-6)};
-            for (double beyond = mm; beyond <= mm + edgeMm; beyond += stepMm)
-                behind.isEndedByGas |= huAt(beyond) < gasHu;
+            // Down to gas without fat between, which would end the wall.
+            double last = hu;
+            for (double beyond = mm; beyond <= mm + edgeMm && huAt(beyond) <= last;
+                 beyond += stepMm) {
+                last = huAt(beyond);
+                behind.isEndedByGas |= last < gasHu;
+            }
             return behind;
         }
         inTissue |= hu >= tissueHu;
