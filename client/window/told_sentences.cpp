@@ -199,7 +199,7 @@ constexpr const char* sentences[] = {
                       "taken for the rectum's end, at %2"),
     QT_TRANSLATE_NOOP(
         "ToldSentences",
-        "%1 ml of gas lie below where the rectum begins: its end is missing, as where "
+        "%1 ml of gas lie below where the rectum begins: its end may be missing, as where "
         "a catheter's balloon fills it, at %2"),
     QT_TRANSLATE_NOOP("ToldSentences",
                       "fluid without tagging (%1 HU) stands under the gas in the %2, its surface "

@@ -58,15 +58,26 @@ double costCut(const ChainJunction& j) {
     return lnOnePlusExp(j.logOdds);
 }
 
-/// Wider than a rectal catheter, where the rectum's end lies, and its ball's middle at most so
-/// high.
-bool isRectalEnd(const ChainNode& node, double mostHighMm) {
-    constexpr double catheterMm = 4.0;
+double mostSacMl(const ChainNode& base) {
+    return 0.5 * base.volumeMl + 5.0;
+}
+
+/// A ball whose middle is no higher lies below a chain's first piece.
+double highestEndMm(const ChainNode& first) {
+    return first.lowestMm.z + 5.0;
+}
+
+/// Beside or beneath a chain's first piece that comes down to the anus, no farther off than beyond
+/// a balloon: wider than a rectal catheter, where the rectum's end lies, and its ball's middle at
+/// most so high.
+bool isRectalEnd(const ChainNode& node, const ChainNode& first, double mostHighMm) {
+    constexpr double catheterMm = 4.0, beyondBalloonMm = 55.0;
     constexpr double leastPlace = 1.0;  // of 1.2 at most
     constexpr double nearAnus = -3.0;   // 2.4 standard deviations
-    return node.radiusMm > catheterMm && node.centerMm.z <= mostHighMm &&
-           node.placeLogOdds[std::size_t(ColonPart::rectum)] > leastPlace &&
-           node.rectumLogOdds > nearAnus;
+    return first.rectumLogOdds > nearAnus && node.rectumLogOdds > nearAnus &&
+           node.radiusMm > catheterMm && node.centerMm.z <= mostHighMm &&
+           glm::distance(node.centerMm, first.lowestMm) < beyondBalloonMm &&
+           node.placeLogOdds[std::size_t(ColonPart::rectum)] > leastPlace;
 }
 
 /// Pieces that sure lumen joins one after the other: a chain goes through all of them or none.
@@ -149,7 +160,7 @@ private:
     bool isSac(int j, int base) const {
         const int side = otherEnd(j, base);
         return holdsTheSame(j) && reachBehindMm(j, side) < sacReachMm(base) &&
-               node(side).volumeMl < 0.5 * node(base).volumeMl + 5.0;
+               node(side).volumeMl < mostSacMl(node(base));
     }
 
     void makeTubes() {
@@ -449,11 +460,12 @@ private:
     }
 
     /// The rectum's end, and what stands between as a balloon's gas, beyond openings too narrow for
-    /// one lumen elsewhere.
+    /// one lumen elsewhere; no more than a sac's volume, and nothing that a door had been closed
+    /// to.
     void takeRectalEnd(ColonChain& chain, Visited& seen) const {
         constexpr double leastOpenMm2 = 10.0;
         const ChainNode& first = node(chain.nodes.front());
-        const double underItMm = first.centerMm.z - first.radiusMm;
+        const double underItMm = std::max(first.centerMm.z - first.radiusMm, highestEndMm(first));
         const auto doors = [&](int from, const auto& visit) {
             for (const int j : around_[std::size_t(from)]) {
                 if (junction(j).openMm2 >= leastOpenMm2 && holdsTheSame(j))
@@ -462,7 +474,7 @@ private:
         };
         const auto takeUnder = [&](int next) {
             if (seen.test(std::size_t(next)) || node(next).given < 0.0 ||
-                !isRectalEnd(node(next), underItMm))
+                !isRectalEnd(node(next), first, underItMm))
                 return false;
             seen.set(std::size_t(next));
             return true;
@@ -472,10 +484,16 @@ private:
             if (!takeUnder(next)) return;
             std::vector<int> body{next};
             floodFill(body, doors, takeUnder);
-            if (std::ranges::any_of(body, [&](int n) { return isBelowRectum(node(n), first); }))
-                chain.rectalEnd.insert(chain.rectalEnd.end(), body.begin(), body.end());
-            else
+            double volumeMl = 0.0;
+            for (const int n : body)
+                volumeMl += node(n).volumeMl;
+            if (volumeMl > mostSacMl(first) ||
+                std::ranges::none_of(body, [&](int n) { return isBelowRectum(node(n), first); })) {
                 seen = before;
+                return;
+            }
+            if (body.size() > 1) chain.balloons.push_back(next);
+            chain.rectalEnd.insert(chain.rectalEnd.end(), body.begin(), body.end());
         });
         chain.sacs.insert(chain.sacs.end(), chain.rectalEnd.begin(), chain.rectalEnd.end());
     }
@@ -525,7 +543,7 @@ private:
                 const bool named = std::any_of(body.begin(), body.end(),
                                                [&](int n) { return node(n).given > 0.0; });
                 const bool sac = named || (holdsTheSame(j) && farthestMm < sacReachMm(base) &&
-                                           volumeMl < 0.5 * node(base).volumeMl + 5.0 &&
+                                           volumeMl < mostSacMl(node(base)) &&
                                            opensToOnePlace(chain, doors, visited));
                 if (sac) {
                     chain.sacs.insert(chain.sacs.end(), body.begin(), body.end());
@@ -613,8 +631,7 @@ private:
 }  // namespace
 
 bool isBelowRectum(const ChainNode& node, const ChainNode& first) {
-    constexpr double marginMm = 5.0;
-    return isRectalEnd(node, first.lowestMm.z + marginMm);
+    return isRectalEnd(node, first, highestEndMm(first));
 }
 
 std::vector<ColonChain> findChains(const ChainGraph& graph, const ChainOptions& options) {

@@ -46,6 +46,7 @@ struct ColonChain {
     std::vector<int> states;     ///< of each node, a ColonPart
     std::vector<int> sacs;  ///< side pieces that belong to the lumen, and the rectum's end (below)
     std::vector<int> rectalEnd;  ///< of the sacs, those taken as such
+    std::vector<int> balloons;   ///< of those, what stands between the first piece and others
     std::vector<int> cuts;       ///< open junctions that have to be closed
     double score = 0.0;
 };
@@ -55,15 +56,16 @@ struct ChainOptions {
     std::size_t chains = 2;  ///< how many that differ are wanted
 };
 
-/// Whether a piece lies where only the rectum's end does: in the middle of the pelvis, its ball no
-/// higher than the lowest end of the piece that a chain begins with, and wider than a rectal
-/// catheter. Loops of small bowel sink no deeper than the pouch of Douglas, 5 to 8 cm over the anus
-/// (Standring, Gray's Anatomy, 41st ed., ch. 66).
+/// Whether a piece lies where only the rectum's end does: beneath a chain's first piece that comes
+/// down to the anus itself, in the middle of the pelvis, no farther off than beyond a balloon (55
+/// mm), and wider than a rectal catheter. Loops of small bowel sink no deeper than the pouch of
+/// Douglas, 5 to 8 cm over the anus (Standring, Gray's Anatomy, 41st ed., ch. 66).
 bool isBelowRectum(const ChainNode& node, const ChainNode& first);
 
 /// The best chains, the best first. Where a catheter's balloon or a fold all but closes the rectum,
 /// its end below (isBelowRectum) is too far off for a sac, and too small to begin a chain behind a
-/// thin wall: it is one of `sacs` if there is any opening to it, or to what leads down to it.
+/// thin wall: it is one of `sacs` where 10 mm² are open to it, or to what leads down to it, and no
+/// wider door, which is closed.
 std::vector<ColonChain> findChains(const ChainGraph& graph, const ChainOptions& options = {});
 
 }  // namespace haustra::segmentation

@@ -60,7 +60,7 @@ public:
         }
         takeCrumbs();
         if (!options_.asGiven) {
-            takeInBalloonsWalls();
+            takeInTheBalloons();
             result_.enclosed =
                 takeInEnclosedGas(contents_.content, cut_, result_.labels, options_.threads);
             labels_ = result_.labels.writable();
@@ -79,12 +79,20 @@ private:
         for (const int n : chain_.sacs)
             kept_[std::size_t(pieceOf(n))] = 1;
     }
-    void takeInBalloonsWalls() {
-        if (chain_.rectalEnd.empty()) return;
-        std::vector<std::int32_t> pieces;
+    /// The chain's first piece and the rectum's end beneath it.
+    std::vector<std::int32_t> rectum() const {
+        std::vector<std::int32_t> pieces{pieceOf(chain_.nodes.front())};
         for (const int n : chain_.rectalEnd)
             pieces.push_back(pieceOf(n));
-        takeInWallsOf(pieces, contents_.content, cut_, result_.labels, options_.threads);
+        return pieces;
+    }
+    void takeInTheBalloons() {
+        if (chain_.balloons.empty()) return;
+        std::vector<std::int32_t> balloons;
+        for (const int n : chain_.balloons)
+            balloons.push_back(pieceOf(n));
+        takeInBalloons(balloons, rectum(), contents_.content, cut_, result_.labels,
+                       options_.threads);
         labels_ = result_.labels.writable();
     }
     bool isKept(std::int32_t piece) const { return piece >= 0 && kept_[std::size_t(piece)]; }
@@ -100,6 +108,12 @@ private:
         std::set<std::int32_t> sacs;
         for (const int n : chain_.sacs)
             sacs.insert(pieceOf(n));
+        // The rectum's end opens to the rectum alone.
+        std::set<std::int32_t> ofRectum;
+        for (const std::int32_t piece : rectum())
+            ofRectum.insert(piece);
+        for (const int n : chain_.rectalEnd)
+            sacs.erase(pieceOf(n));
         std::set<int> passed;
         for (const int j : chain_.junctions) {
             const ChainJunction& junction = graph_.graph.junctions[std::size_t(j)];
@@ -112,7 +126,8 @@ private:
             const Orifice& orifice = cut_.orifices[o];
             if (!isKept(orifice.a) || !isKept(orifice.b)) continue;
             inner_.push_back(int(o));
-            const bool ofSac = sacs.count(orifice.a) || sacs.count(orifice.b);
+            const bool ofSac = sacs.count(orifice.a) || sacs.count(orifice.b) ||
+                               (ofRectum.count(orifice.a) && ofRectum.count(orifice.b));
             open_[o] =
                 passed.count(int(o)) || (ofSac && orifice.openMm2 > 0.0 && !cuts_.count(int(o)));
             for (const std::uint32_t n : orifice.voxels)

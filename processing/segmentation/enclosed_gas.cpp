@@ -60,8 +60,9 @@ public:
             taken.push_back(std::move(body));
         }
         for (const auto& body : taken) {
-            const auto wall =
-                wallAround(body, [&](std::size_t, std::size_t m) { return isGas(m); });
+            const auto wall = wallAround(
+                body, [&](std::size_t, std::size_t m) { return isGas(m); },
+                [&](std::size_t m) { return isLumen(m); });
             for (const std::uint32_t n : body)
                 labels_[n] = std::uint8_t(LumenLabel::air);
             takeIn(wall);
@@ -72,16 +73,24 @@ public:
         return found;
     }
 
-    void takeInWallsOf(const std::vector<std::int32_t>& pieces, int threads) {
-        std::vector<char> isOf(cut_.pieces.size(), 0);
-        for (const std::int32_t piece : pieces)
-            isOf[std::size_t(piece)] = 1;
+    void takeInBalloons(const std::vector<std::int32_t>& balloons,
+                        const std::vector<std::int32_t>& rectum, int threads) {
+        enum class Of : char { others, balloon, rectum };
+        std::vector<Of> is(cut_.pieces.size(), Of::others);
+        for (const std::int32_t piece : rectum)
+            is[std::size_t(piece)] = Of::rectum;
+        for (const std::int32_t piece : balloons)
+            is[std::size_t(piece)] = Of::balloon;
+        const auto of = [&](std::size_t n) {
+            const std::int32_t piece = cut_.pieceAt[n];
+            return piece >= 0 ? is[std::size_t(piece)] : Of::others;
+        };
         const auto body = voxelsWhere(grid_, threads, [&](std::size_t n, glm::ivec3) {
-            return cut_.pieceAt[n] >= 0 && isOf[std::size_t(cut_.pieceAt[n])] && isLumen(n);
+            return of(n) == Of::balloon && isLumen(n);
         });
-        takeIn(wallAround(body, [&](std::size_t n, std::size_t m) {
-            return cut_.pieceAt[m] == cut_.pieceAt[n];
-        }));
+        takeIn(wallAround(
+            body, [&](std::size_t n, std::size_t m) { return cut_.pieceAt[m] == cut_.pieceAt[n]; },
+            [&](std::size_t m) { return of(m) == Of::rectum && isLumen(m); }));
     }
 
 private:
@@ -165,11 +174,11 @@ private:
         return gas;
     }
 
-    // What lies on the straight ways of at most a wall's width from the body to other lumen:
-    // isOwn(voxel of the body, voxel) tells what is the body's.
-    template <class IsOwn>
-    std::vector<std::size_t> wallAround(const std::vector<std::uint32_t>& body,
-                                        const IsOwn& isOwn) const {
+    // What lies on the straight ways of at most a wall's width from the body to what
+    // isBeyond(voxel) tells; isOwn(voxel of the body, voxel) tells what is the body's.
+    template <class IsOwn, class IsBeyond>
+    std::vector<std::size_t> wallAround(const std::vector<std::uint32_t>& body, const IsOwn& isOwn,
+                                        const IsBeyond& isBeyond) const {
         std::vector<std::size_t> wall;
         for (const std::uint32_t n : body) {
             bool side = false;
@@ -178,8 +187,7 @@ private:
             const glm::ivec3 v = grid_.voxelAt(n);
             for (const glm::ivec3 step : ball_) {
                 if (!grid_.contains(v + step)) continue;
-                const std::size_t to = grid_.index(v + step);
-                if (!isLumen(to) || isOwn(n, to)) continue;
+                if (!isBeyond(grid_.index(v + step))) continue;
                 const int length = std::max({std::abs(step.x), std::abs(step.y), std::abs(step.z)});
                 for (int k = 1; k < length; ++k) {
                     const std::size_t m = grid_.index(
@@ -227,9 +235,10 @@ std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
     return Enclosed(content, cut, labels).run(threads);
 }
 
-void takeInWallsOf(const std::vector<std::int32_t>& pieces, const Volume<std::uint8_t>& content,
-                   const TubePieces& cut, Volume<std::uint8_t>& labels, int threads) {
-    Enclosed(content, cut, labels).takeInWallsOf(pieces, threads);
+void takeInBalloons(const std::vector<std::int32_t>& balloons,
+                    const std::vector<std::int32_t>& rectum, const Volume<std::uint8_t>& content,
+                    const TubePieces& cut, Volume<std::uint8_t>& labels, int threads) {
+    Enclosed(content, cut, labels).takeInBalloons(balloons, rectum, threads);
 }
 
 }  // namespace haustra::segmentation

@@ -27,10 +27,11 @@ std::vector<EnclosedGas> takeInEnclosedGas(const Volume<std::uint8_t>& content,
                                            const TubePieces& cut, Volume<std::uint8_t>& labels,
                                            int threads);
 
-/// Takes into `labels` walls of at most 3 mm between lumen in these pieces and lumen in others, as
-/// LumenLabel::untagged: of a balloon that fills the rectum, whose gas and what lies below were
-/// taken for its end. O(voxels).
-void takeInWallsOf(const std::vector<std::int32_t>& pieces, const Volume<std::uint8_t>& content,
-                   const TubePieces& cut, Volume<std::uint8_t>& labels, int threads);
+/// Takes into `labels` walls of at most 3 mm between lumen in the pieces `balloons` and lumen in
+/// the pieces `rectum`, as LumenLabel::untagged: of a balloon that fills the rectum. What parts
+/// either from other pieces stays. O(voxels).
+void takeInBalloons(const std::vector<std::int32_t>& balloons,
+                    const std::vector<std::int32_t>& rectum, const Volume<std::uint8_t>& content,
+                    const TubePieces& cut, Volume<std::uint8_t>& labels, int threads);
 
 }  // namespace haustra::segmentation

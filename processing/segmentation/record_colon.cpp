@@ -372,7 +372,7 @@ private:
         double sumMl = 0.0;
         ToldPlaces places;
         for (const LeftOutBody& body : made_.leftOut) {
-            if (!body.isFarGas()) continue;
+            if (!body.isFarGas() || isToldAsRectum(body)) continue;
             sumMl += body.volumeMl;
             places.add(body.centerMm);
         }
@@ -382,6 +382,10 @@ private:
                     "bowel's or free, at ",
                     sumMl) +
             places.text());
+    }
+
+    bool isToldAsRectum(const LeftOutBody& body) const {
+        return std::ranges::count(missingEndMm_, body.centerMm) > 0;
     }
 
     // A balloon that fills the rectum closes it; one of water looks like its wall.
@@ -400,24 +404,26 @@ private:
                         takenMl) +
                 ends.text());
         }
+        if (made_.pieces.front().part != ColonPart::rectum) return;  // told as such
         const std::set<int> taken = nodesOf(chain_);
         const ChainNode& first = graph_.graph.nodes[std::size_t(chain_.nodes.front())];
         double sumMl = 0.0;
         ToldPlaces places;
         for (std::size_t n = 0; n < graph_.graph.nodes.size(); ++n) {
             const TubePiece& piece = pieceOf(int(n));
-            if (taken.count(int(n)) || !piece.mostlyGas() || isTakenIn(piece) ||
-                !isBelowRectum(graph_.graph.nodes[n], first))
+            const ChainNode& node = graph_.graph.nodes[n];
+            if (taken.count(int(n)) || node.given < 0.0 || !piece.mostlyGas() || isTakenIn(piece) ||
+                !isBelowRectum(node, first))
                 continue;
             sumMl += piece.volumeMl;
             places.add(piece.centerMm);
+            missingEndMm_.push_back(piece.centerMm);
         }
-        if (sumMl < tellMl) return;
+        if (sumMl < tellMl) return missingEndMm_.clear();
         made_.warnings.push_back(
-            printed(
-                "%.0f ml of gas lie below where the rectum begins: its end is missing, as where "
-                "a catheter's balloon fills it, at ",
-                sumMl) +
+            printed("%.0f ml of gas lie below where the rectum begins: its end may be missing, as "
+                    "where a catheter's balloon fills it, at ",
+                    sumMl) +
             places.text());
     }
 
@@ -433,7 +439,8 @@ private:
                 const LeftOutBody& body = made_.leftOut[m];
                 if (said[m] || body.content != first.content || body.nearest != first.nearest ||
                     body.opens != first.opens || body.likeColon != first.likeColon ||
-                    (!body.opens && body.volumeMl < tellMl) || body.isFarGas())
+                    (!body.opens && body.volumeMl < tellMl) || body.isFarGas() ||
+                    isToldAsRectum(body))
                     continue;
                 said[m] = true;
                 sumMl += body.volumeMl;
@@ -602,6 +609,7 @@ private:
     const std::vector<BrightBody>& metal_;
     const Source& source_;
     ColonRecord made_;
+    std::vector<glm::dvec3> missingEndMm_;  ///< told by sayRectalEnd
 };
 
 }  // namespace

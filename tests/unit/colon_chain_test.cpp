@@ -77,13 +77,16 @@ TEST(ColonChain, GoesThroughFoldedBowelRatherThanSmooth) {
 
 // Beneath the first piece, whose lowest end lies 60 mm under its middle.
 struct RectalEnd {
-    double middleMm = -70.0, place = 1.2, radiusMm = 5.0, openMm2 = 40.0;
+    double middleMm = -70.0, place = 1.2, radiusMm = 5.0, openMm2 = 40.0, volumeMl = 8.0;
+    double firstAtAnus = 0.0, given = 0.0;
     bool isTaken() const {
         ChainGraph graph = row(20.0);
         graph.nodes[0].lowestMm = {0.0, 0.0, -60.0};
         graph.nodes.push_back(piece(20.0, -1.0));
         ChainNode& end = graph.nodes.back();
         end.centerMm = {0.0, 0.0, middleMm}, end.radiusMm = radiusMm;
+        end.volumeMl = volumeMl, end.given = given;
+        graph.nodes[0].rectumLogOdds = firstAtAnus;
         end.placeLogOdds[std::size_t(ColonPart::rectum)] = place;
         graph.junctions.push_back(junction(0, 12, JunctionKind::thinWall, -5.0));
         graph.junctions.back().openMm2 = openMm2;
@@ -98,6 +101,10 @@ TEST(ColonChain, GoesOnToTheRectumsEndThroughANarrowOpening) {
     EXPECT_FALSE((RectalEnd{.place = 0.0}.isTaken())) << "not in the middle";
     EXPECT_FALSE((RectalEnd{.radiusMm = 3.0}.isTaken())) << "as wide as a catheter";
     EXPECT_FALSE((RectalEnd{.openMm2 = 0.0}.isTaken())) << "nothing but wall between";
+    EXPECT_FALSE((RectalEnd{.middleMm = -120.0}.isTaken())) << "farther off than beyond a balloon";
+    EXPECT_FALSE((RectalEnd{.volumeMl = 40.0}.isTaken())) << "larger than a sac";
+    EXPECT_FALSE((RectalEnd{.firstAtAnus = -6.0}.isTaken())) << "what it lies under is no rectum";
+    EXPECT_FALSE((RectalEnd{.given = -60.0}.isTaken())) << "a reader said that it is not";
 }
 
 TEST(ColonChain, GoesOnThroughABalloonToTheRectumsEnd) {

@@ -7,7 +7,9 @@
 #include "core/crop.h"
 #include "phantom/phantom.h"
 #include "phantom/score.h"
+#include "segmentation/bowel_contents.h"
 #include "segmentation/course_doubts.h"
+#include "segmentation/enclosed_gas.h"
 #include "segmentation/metal.h"
 
 #include <algorithm>
@@ -762,7 +764,7 @@ TEST(FindColon, ABalloonThatClosesTheRectumIsTold) {
         drawing.paintColon([](glm::dvec3 p) { return p.y >= levelMm && p.z > 100.0; });
         if (balloon)
             drawing.paint(
-                20, [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(160, 168, 46)) < 23.0; });
+                45, [](glm::dvec3 p) { return glm::distance(p, glm::dvec3(160, 167, 43)) < 20.5; });
         return drawing;
     };
     const auto open = find(drawn(false).scan()), closed = find(drawn(true).scan());
@@ -771,6 +773,34 @@ TEST(FindColon, ABalloonThatClosesTheRectumIsTold) {
     EXPECT_FALSE(tells(*open, told));
     EXPECT_TRUE(tells(*closed, told));
     EXPECT_TRUE(isOnePiece(*closed));
+}
+
+// Three slabs of lumen along x, 2 mm of wall between each and the next.
+TEST(TakeInBalloons, TheWallTowardsTheRectumAloneIsTakenIn) {
+    const Grid grid = axisAlignedGrid({24, 12, 12}, glm::dvec3(1.0));
+    Volume<std::uint8_t> content(grid, std::uint8_t(segmentation::Content::tissue)),
+        labels(grid, std::uint8_t(LumenLabel::outside));
+    segmentation::TubePieces cut;
+    cut.pieceAt = Volume<std::int32_t>(grid, -1);
+    cut.distanceMm = Volume<float>(grid, 0.0f);
+    cut.pieces.resize(3);  // rectum, balloon, another loop
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const int x = grid.voxelAt(n).x;
+        if (x % 8 >= 6) continue;
+        cut.pieceAt.writable()[n] = x / 8;
+        content.writable()[n] = std::uint8_t(segmentation::Content::gas);
+        labels.writable()[n] = std::uint8_t(LumenLabel::air);
+    }
+    segmentation::takeInBalloons({1}, {0, 1}, content, cut, labels, 1);
+    for (std::size_t n = 0; n < grid.voxelCount(); ++n) {
+        const int x = grid.voxelAt(n).x;
+        if (x == 6 || x == 7) {
+            EXPECT_EQ(LumenLabel(labels[n]), LumenLabel::untagged);
+        }
+        if (x == 14 || x == 15) {
+            EXPECT_EQ(LumenLabel(labels[n]), LumenLabel::outside);
+        }
+    }
 }
 
 // Lying on the left side, down is towards the patient's left.

@@ -900,8 +900,8 @@
         <translation>%1 ml hinter einer scheinbaren dünnen Wand, wie der eines Katheterballons, wurden für das Ende des Rektums gehalten, bei %2</translation>
     </message>
     <message>
-        <source>%1 ml of gas lie below where the rectum begins: its end is missing, as where a catheter&apos;s balloon fills it, at %2</source>
-        <translation>%1 ml Gas liegen unterhalb des Beginns des Rektums: dessen Ende fehlt, wie wo der Ballon eines Katheters es ausfüllt, bei %2</translation>
+        <source>%1 ml of gas lie below where the rectum begins: its end may be missing, as where a catheter&apos;s balloon fills it, at %2</source>
+        <translation>%1 ml Gas liegen unterhalb des Beginns des Rektums: dessen Ende kann fehlen, etwa wenn der Ballon eines Katheters es ausfüllt, bei %2</translation>
     </message>
     <message>
         <source>fluid without tagging (%1 HU) stands under the gas in the %2, its surface %3 mm2; what lies in it and beneath is not seen, at %4</source>
